@@ -1,0 +1,343 @@
+//! Numbers the equations are written in: one scalar, or a block of 16 lanes.
+//!
+//! Every equation of the crate is written once, generic over [`Real`], and runs as `f64` (identification, tests), `f32`
+//! (replay) and as a 16-lane block (simulator, network). Blocks come in one width and several implementations; which
+//! one runs is decided once, at run time, by [`dispatch`]. A block type never leaves its `dispatch`, so code for a CPU
+//! that is not there cannot be reached.
+//!
+//! Everything called inside a [`Kernel`] must be `#[inline(always)]`, or wrapped in [`Lane::vectorize`]: a function that
+//! is compiled on its own does not know which instructions it may use.
+
+pub mod math;
+mod portable;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use std::fmt;
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+
+pub use portable::Portable;
+
+/// Lanes in a block, on every CPU, so that results do not depend on the vector length.
+pub const LANES: usize = 16;
+
+/// A truth value per lane.
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// Bit `i` is lane `i`; a scalar is lane 0.
+    fn bits(self) -> u32;
+    /// The inverse of [`Mask::bits`]; higher bits are ignored.
+    fn from_bits(bits: u32) -> Self;
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+}
+
+/// A real number, or 16 of them: the arithmetic that equations use.
+pub trait Real:
+    Copy
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    type Mask: Mask;
+    /// Whether [`Real::mul_add`] rounds once. Implementations of one precision that fuse agree bit for bit.
+    const FUSES: bool;
+
+    /// The constant `x`, rounded to this precision.
+    fn of(x: f64) -> Self;
+    /// `self * a + b`.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    /// The smaller of two; `b` where either is not a number.
+    fn min(self, b: Self) -> Self;
+    /// The larger of two; `b` where either is not a number.
+    fn max(self, b: Self) -> Self;
+    fn lt(self, b: Self) -> Self::Mask;
+    fn le(self, b: Self) -> Self::Mask;
+    /// `yes` where `mask`, else `no`.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// Natural exponential; relative error below 3e-7 in single precision over -87..88, clamped outside.
+    fn exp(self) -> Self;
+    /// Natural logarithm of a positive normal number; absolute error below 4e-7 near 1, else relative.
+    fn ln(self) -> Self;
+    /// Hyperbolic tangent; relative error below 2e-6 in single precision, never outside [-1, 1].
+    fn tanh(self) -> Self;
+    /// `(sin(2 pi x), cos(2 pi x))` of `x` in turns; absolute error below 2e-7 in single precision.
+    fn sin_cos_turns(self) -> (Self, Self);
+
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::of(0.0)
+    }
+    #[inline(always)]
+    fn one() -> Self {
+        Self::of(1.0)
+    }
+    #[inline(always)]
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
+    }
+    /// Whether the number is neither infinite nor NaN.
+    #[inline(always)]
+    fn is_finite(self) -> Self::Mask {
+        self.abs().le(Self::of(f32::MAX as f64))
+    }
+}
+
+/// The bit-level operations behind the single-precision functions of [`math`].
+pub trait Single: Real {
+    /// Nearest integer, ties to even.
+    fn round(self) -> Self;
+    /// `2^self` for a whole number in -126..=127.
+    fn pow2(self) -> Self;
+    /// `(m, e)` with `self = m 2^e`, `m` in [0.5, 1), for a positive normal number.
+    fn split_exponent(self) -> (Self, Self);
+}
+
+/// A block of [`LANES`] numbers.
+pub trait Lane: Real {
+    /// The number in each lane.
+    type Elem: Real<Mask = bool> + PartialOrd + Default + fmt::Debug;
+    /// Rows and 16-lane columns of the matrix micro-kernel's tile that this CPU's registers hold.
+    const TILE: Tile;
+
+    fn splat(x: Self::Elem) -> Self;
+    fn from_array(x: [Self::Elem; LANES]) -> Self;
+    fn to_array(self) -> [Self::Elem; LANES];
+    /// # Safety
+    /// `p` must be valid for reading [`LANES`] elements; no alignment is needed.
+    unsafe fn load(p: *const Self::Elem) -> Self;
+    /// # Safety
+    /// `p` must be valid for writing [`LANES`] elements; no alignment is needed.
+    unsafe fn store(self, p: *mut Self::Elem);
+    /// Transposes a 16 x 16 block: lane `i` of row `j` becomes lane `j` of row `i`.
+    fn transpose(rows: &mut [Self; LANES]);
+    /// Runs `f` compiled for this block's instructions, as a function of its own.
+    fn vectorize<T>(f: impl FnOnce() -> T) -> T;
+
+    /// Sum over the lanes, always in the same order.
+    #[inline(always)]
+    fn sum(self) -> Self::Elem {
+        let mut x = self.to_array();
+        let mut half = LANES / 2;
+        while half > 0 {
+            for i in 0..half {
+                x[i] = x[i] + x[i + half];
+            }
+            half /= 2;
+        }
+        x[0]
+    }
+    #[inline(always)]
+    fn from_slice(x: &[Self::Elem]) -> Self {
+        assert!(x.len() >= LANES);
+        // SAFETY: the length was checked.
+        unsafe { Self::load(x.as_ptr()) }
+    }
+    #[inline(always)]
+    fn write(self, x: &mut [Self::Elem]) {
+        assert!(x.len() >= LANES);
+        // SAFETY: the length was checked.
+        unsafe { self.store(x.as_mut_ptr()) }
+    }
+}
+
+/// The register tile of the matrix micro-kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tile {
+    /// 6 rows x 4 blocks: 24 accumulators of 32 wide registers.
+    Rows6Blocks4,
+    /// 6 rows x 1 block, for 16 registers of half a block.
+    Rows6Blocks1,
+    /// 2 rows x 1 block, for 16 registers of a quarter of a block.
+    Rows2Blocks1,
+}
+
+/// A block of `f32`: what the simulator and the network run on.
+pub trait Lane32: Lane<Elem = f32> + Single {
+    type Bits: Bits;
+    /// `bits` as a number, exact below 2^24.
+    fn from_bits(bits: Self::Bits) -> Self;
+}
+
+/// 16 unsigned 32-bit integers with wrapping arithmetic: what random numbers are made of.
+pub trait Bits: Copy + Add<Output = Self> + BitXor<Output = Self> + BitAnd<Output = Self> {
+    fn splat(x: u32) -> Self;
+    fn from_array(x: [u32; LANES]) -> Self;
+    fn to_array(self) -> [u32; LANES];
+    /// `(high, low)` halves of the 64-bit product.
+    fn mul_wide(self, x: u32) -> (Self, Self);
+    fn shift_right<const N: u32>(self) -> Self;
+}
+
+/// Work to be run on the best blocks this CPU has.
+pub trait Kernel {
+    type Output;
+    /// The body; mark it `#[inline(always)]`.
+    fn run<L: Lane32>(self) -> Self::Output;
+}
+
+/// An implementation of the 16-lane block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// One 512-bit register a block.
+    Avx512,
+    /// Two 256-bit registers a block, fused multiply-add.
+    Avx2,
+    /// What the compiler makes of a loop over 16 numbers; multiply-add is not fused.
+    Portable,
+}
+
+impl Level {
+    /// All levels this CPU can run, best first.
+    pub fn available() -> Vec<Level> {
+        [Level::Avx512, Level::Avx2, Level::Portable].into_iter().filter(|l| l.is_available()).collect()
+    }
+
+    /// The best level of this CPU.
+    pub fn best() -> Level {
+        Level::available()[0]
+    }
+
+    fn is_available(self) -> bool {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx512 => x86::has_avx512(),
+            #[cfg(target_arch = "x86_64")]
+            Level::Avx2 => x86::has_avx2(),
+            #[cfg(not(target_arch = "x86_64"))]
+            Level::Avx512 | Level::Avx2 => false,
+            Level::Portable => true,
+        }
+    }
+}
+
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Level::Avx512 => "AVX-512",
+            Level::Avx2 => "AVX2",
+            Level::Portable => "portable",
+        })
+    }
+}
+
+/// Runs `kernel` at `level`.
+///
+/// # Panics
+/// If this CPU does not have `level`.
+pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
+    assert!(level.is_available(), "this CPU does not have {level}");
+    match level {
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => x86::Avx512::vectorize(
+            #[inline(always)]
+            || kernel.run::<x86::Avx512>(),
+        ),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 => x86::Avx2::vectorize(
+            #[inline(always)]
+            || kernel.run::<x86::Avx2>(),
+        ),
+        _ => kernel.run::<Portable<f32>>(),
+    }
+}
+
+macro_rules! scalar {
+    ($t:ty, $fuses:literal, $exp:expr, $ln:expr, $tanh:expr, $sin_cos:expr) => {
+        impl Real for $t {
+            type Mask = bool;
+            const FUSES: bool = $fuses;
+            #[inline(always)]
+            fn of(x: f64) -> Self {
+                x as $t
+            }
+            #[inline(always)]
+            fn mul_add(self, a: Self, b: Self) -> Self {
+                <$t>::mul_add(self, a, b)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                <$t>::sqrt(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                <$t>::abs(self)
+            }
+            #[inline(always)]
+            fn min(self, b: Self) -> Self {
+                if self < b { self } else { b }
+            }
+            #[inline(always)]
+            fn max(self, b: Self) -> Self {
+                if self > b { self } else { b }
+            }
+            #[inline(always)]
+            fn lt(self, b: Self) -> bool {
+                self < b
+            }
+            #[inline(always)]
+            fn le(self, b: Self) -> bool {
+                self <= b
+            }
+            #[inline(always)]
+            fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+            #[inline(always)]
+            fn exp(self) -> Self {
+                $exp(self)
+            }
+            #[inline(always)]
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+            #[inline(always)]
+            fn tanh(self) -> Self {
+                $tanh(self)
+            }
+            #[inline(always)]
+            fn sin_cos_turns(self) -> (Self, Self) {
+                $sin_cos(self)
+            }
+        }
+    };
+}
+scalar!(f32, true, math::exp, math::ln, math::tanh, math::sin_cos_turns);
+scalar!(f64, true, f64::exp, f64::ln, f64::tanh, |x: f64| (x * std::f64::consts::TAU).sin_cos());
+
+impl Single for f32 {
+    #[inline(always)]
+    fn round(self) -> Self {
+        self.round_ties_even()
+    }
+    #[inline(always)]
+    fn pow2(self) -> Self {
+        f32::from_bits(((self as i32 + 127) as u32) << 23)
+    }
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        let bits = self.to_bits();
+        let m = f32::from_bits((bits & 0x007f_ffff) | 0x3f00_0000);
+        (m, (bits >> 23) as f32 - 126.0)
+    }
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self as u32
+    }
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        bits & 1 == 1
+    }
+}
