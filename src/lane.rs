@@ -123,6 +123,22 @@ pub trait Lane: Real {
     /// Runs `f` compiled for this block's instructions, as a function of its own.
     fn vectorize<T>(f: impl FnOnce() -> T) -> T;
 
+    /// The number in lane `i`.
+    #[inline(always)]
+    fn get(&self, i: usize) -> Self::Elem {
+        const { assert!(size_of::<Self>() == LANES * size_of::<Self::Elem>()) }
+        assert!(i < LANES);
+        // SAFETY: a block is its lanes in order, as the size shows and the tests check, and `i` is one of them.
+        unsafe { (self as *const Self).cast::<Self::Elem>().add(i).read() }
+    }
+    /// Replaces the number in lane `i`.
+    #[inline(always)]
+    fn set(&mut self, i: usize, x: Self::Elem) {
+        const { assert!(size_of::<Self>() == LANES * size_of::<Self::Elem>()) }
+        assert!(i < LANES);
+        // SAFETY: as in `get`.
+        unsafe { (self as *mut Self).cast::<Self::Elem>().add(i).write(x) }
+    }
     /// Sum over the lanes, always in the same order.
     #[inline(always)]
     fn sum(self) -> Self::Elem {
@@ -168,14 +184,39 @@ pub trait Lane32: Lane<Elem = f32> + Single {
     fn from_bits(bits: Self::Bits) -> Self;
 }
 
-/// 16 unsigned 32-bit integers with wrapping arithmetic: what random numbers are made of.
-pub trait Bits: Copy + Add<Output = Self> + BitXor<Output = Self> + BitAnd<Output = Self> {
+/// An unsigned 32-bit integer, or 16 of them: what random numbers are made of.
+pub trait Word: Copy + BitXor<Output = Self> + BitAnd<Output = Self> {
     fn splat(x: u32) -> Self;
-    fn from_array(x: [u32; LANES]) -> Self;
-    fn to_array(self) -> [u32; LANES];
+    fn wrapping_add(self, b: Self) -> Self;
     /// `(high, low)` halves of the 64-bit product.
     fn mul_wide(self, x: u32) -> (Self, Self);
     fn shift_right<const N: u32>(self) -> Self;
+}
+
+/// A block of [`LANES`] words.
+pub trait Bits: Word {
+    fn from_array(x: [u32; LANES]) -> Self;
+    fn to_array(self) -> [u32; LANES];
+}
+
+impl Word for u32 {
+    #[inline(always)]
+    fn splat(x: u32) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn wrapping_add(self, b: Self) -> Self {
+        u32::wrapping_add(self, b)
+    }
+    #[inline(always)]
+    fn mul_wide(self, x: u32) -> (Self, Self) {
+        let wide = self as u64 * x as u64;
+        ((wide >> 32) as u32, wide as u32)
+    }
+    #[inline(always)]
+    fn shift_right<const N: u32>(self) -> Self {
+        self >> N
+    }
 }
 
 /// Work to be run on the best blocks this CPU has.

@@ -1,6 +1,6 @@
 //! The block as an array of 16 numbers: for CPUs without a block of their own, and for `f64` gradient checks.
 
-use super::{Bits, LANES, Lane, Lane32, Mask, Real, Single, Tile};
+use super::{Bits, LANES, Lane, Lane32, Mask, Real, Single, Tile, Word};
 use std::array::from_fn;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -198,13 +198,6 @@ impl Lane32 for Portable<f32> {
     }
 }
 
-impl Add for Portable<u32> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Portable(from_fn(|i| self.0[i].wrapping_add(b.0[i])))
-    }
-}
 impl BitXor for Portable<u32> {
     type Output = Self;
     #[inline(always)]
@@ -219,18 +212,14 @@ impl BitAnd for Portable<u32> {
         Portable(from_fn(|i| self.0[i] & b.0[i]))
     }
 }
-impl Bits for Portable<u32> {
+impl Word for Portable<u32> {
     #[inline(always)]
     fn splat(x: u32) -> Self {
         Portable([x; LANES])
     }
     #[inline(always)]
-    fn from_array(x: [u32; LANES]) -> Self {
-        Portable(x)
-    }
-    #[inline(always)]
-    fn to_array(self) -> [u32; LANES] {
-        self.0
+    fn wrapping_add(self, b: Self) -> Self {
+        Portable(from_fn(|i| self.0[i].wrapping_add(b.0[i])))
     }
     #[inline(always)]
     fn mul_wide(self, x: u32) -> (Self, Self) {
@@ -240,5 +229,15 @@ impl Bits for Portable<u32> {
     #[inline(always)]
     fn shift_right<const N: u32>(self) -> Self {
         Portable(self.0.map(|a| a >> N))
+    }
+}
+impl Bits for Portable<u32> {
+    #[inline(always)]
+    fn from_array(x: [u32; LANES]) -> Self {
+        Portable(x)
+    }
+    #[inline(always)]
+    fn to_array(self) -> [u32; LANES] {
+        self.0
     }
 }

@@ -3,7 +3,7 @@
 //! Soundness: the types are private to `lane` and are reached only through [`super::dispatch`], which has checked the
 //! CPU; so the instructions they use exist wherever they do.
 
-use super::{Bits, LANES, Lane, Lane32, Mask, Real, Single, Tile, math};
+use super::{Bits, LANES, Lane, Lane32, Mask, Real, Single, Tile, Word, math};
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -62,14 +62,12 @@ binary!(Avx512, Add, add, |a, b| _mm512_add_ps(a, b));
 binary!(Avx512, Sub, sub, |a, b| _mm512_sub_ps(a, b));
 binary!(Avx512, Mul, mul, |a, b| _mm512_mul_ps(a, b));
 binary!(Avx512, Div, div, |a, b| _mm512_div_ps(a, b));
-binary!(Avx512Bits, Add, add, |a, b| _mm512_add_epi32(a, b));
 binary!(Avx512Bits, BitXor, bitxor, |a, b| _mm512_xor_si512(a, b));
 binary!(Avx512Bits, BitAnd, bitand, |a, b| _mm512_and_si512(a, b));
 binary!(Avx2, Add, add, |a, b| pair!(_mm256_add_ps, a, b));
 binary!(Avx2, Sub, sub, |a, b| pair!(_mm256_sub_ps, a, b));
 binary!(Avx2, Mul, mul, |a, b| pair!(_mm256_mul_ps, a, b));
 binary!(Avx2, Div, div, |a, b| pair!(_mm256_div_ps, a, b));
-binary!(Avx2Bits, Add, add, |a, b| pair!(_mm256_add_epi32, a, b));
 binary!(Avx2Bits, BitXor, bitxor, |a, b| pair!(_mm256_xor_si256, a, b));
 binary!(Avx2Bits, BitAnd, bitand, |a, b| pair!(_mm256_and_si256, a, b));
 binary!(Avx2Mask, BitAnd, bitand, |a, b| pair!(_mm256_and_ps, a, b));
@@ -409,23 +407,16 @@ impl Lane32 for Avx2 {
     }
 }
 
-impl Bits for Avx512Bits {
+impl Word for Avx512Bits {
     #[inline(always)]
     fn splat(x: u32) -> Self {
         // SAFETY: see the module's page.
         Self(unsafe { _mm512_set1_epi32(x as i32) })
     }
     #[inline(always)]
-    fn from_array(x: [u32; LANES]) -> Self {
-        // SAFETY: the array has the length of a block.
-        Self(unsafe { _mm512_loadu_si512(x.as_ptr().cast()) })
-    }
-    #[inline(always)]
-    fn to_array(self) -> [u32; LANES] {
-        let mut x = [0; LANES];
-        // SAFETY: the array has the length of a block.
-        unsafe { _mm512_storeu_si512(x.as_mut_ptr().cast(), self.0) };
-        x
+    fn wrapping_add(self, b: Self) -> Self {
+        // SAFETY: see the module's page.
+        Self(unsafe { _mm512_add_epi32(self.0, b.0) })
     }
     #[inline(always)]
     fn mul_wide(self, x: u32) -> (Self, Self) {
@@ -446,26 +437,29 @@ impl Bits for Avx512Bits {
         Self(unsafe { _mm512_srli_epi32::<N>(self.0) })
     }
 }
-impl Bits for Avx2Bits {
+impl Bits for Avx512Bits {
+    #[inline(always)]
+    fn from_array(x: [u32; LANES]) -> Self {
+        // SAFETY: the array has the length of a block.
+        Self(unsafe { _mm512_loadu_si512(x.as_ptr().cast()) })
+    }
+    #[inline(always)]
+    fn to_array(self) -> [u32; LANES] {
+        let mut x = [0; LANES];
+        // SAFETY: the array has the length of a block.
+        unsafe { _mm512_storeu_si512(x.as_mut_ptr().cast(), self.0) };
+        x
+    }
+}
+impl Word for Avx2Bits {
     #[inline(always)]
     fn splat(x: u32) -> Self {
         // SAFETY: see the module's page.
         Self([unsafe { _mm256_set1_epi32(x as i32) }; 2])
     }
     #[inline(always)]
-    fn from_array(x: [u32; LANES]) -> Self {
-        // SAFETY: the array has the length of a block.
-        Self(unsafe { [_mm256_loadu_si256(x.as_ptr().cast()), _mm256_loadu_si256(x.as_ptr().add(8).cast())] })
-    }
-    #[inline(always)]
-    fn to_array(self) -> [u32; LANES] {
-        let mut x = [0; LANES];
-        // SAFETY: the array has the length of a block.
-        unsafe {
-            _mm256_storeu_si256(x.as_mut_ptr().cast(), self.0[0]);
-            _mm256_storeu_si256(x.as_mut_ptr().add(8).cast(), self.0[1]);
-        }
-        x
+    fn wrapping_add(self, b: Self) -> Self {
+        Self(pair!(_mm256_add_epi32, self.0, b.0))
     }
     #[inline(always)]
     fn mul_wide(self, x: u32) -> (Self, Self) {
@@ -488,5 +482,22 @@ impl Bits for Avx2Bits {
         // SAFETY: see the module's page.
         let count = unsafe { _mm_cvtsi32_si128(N as i32) };
         Self(pair!(|a| _mm256_srl_epi32(a, count), self.0))
+    }
+}
+impl Bits for Avx2Bits {
+    #[inline(always)]
+    fn from_array(x: [u32; LANES]) -> Self {
+        // SAFETY: the array has the length of a block.
+        Self(unsafe { [_mm256_loadu_si256(x.as_ptr().cast()), _mm256_loadu_si256(x.as_ptr().add(8).cast())] })
+    }
+    #[inline(always)]
+    fn to_array(self) -> [u32; LANES] {
+        let mut x = [0; LANES];
+        // SAFETY: the array has the length of a block.
+        unsafe {
+            _mm256_storeu_si256(x.as_mut_ptr().cast(), self.0[0]);
+            _mm256_storeu_si256(x.as_mut_ptr().add(8).cast(), self.0[1]);
+        }
+        x
     }
 }

@@ -1,0 +1,109 @@
+//! The observation (paper Eq. 10) and its layout.
+//!
+//! [`LAYOUT`] is the only place that says what an observation holds: the simulator, the documentation of a run and the
+//! export of a policy all read it.
+
+use super::Block;
+use super::noise::Noise;
+use crate::dynamics::attitude::{body_axes, cross};
+use crate::lane::Lane;
+
+/// Consecutive entries of the observation that belong together.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Group {
+    pub name: &'static str,
+    /// What the entries are, in order.
+    pub entries: &'static [&'static str],
+    pub unit: &'static str,
+    pub frame: &'static str,
+    /// An entry is (value - offset) * scale.
+    pub offset: f64,
+    pub scale: f64,
+}
+
+const XYZ: &[&str] = &["x", "y", "z"];
+const COMMANDS: &[&str] = &["roll", "pitch", "yaw", "thrust"];
+
+const fn group(
+    name: &'static str,
+    entries: &'static [&'static str],
+    unit: &'static str,
+    frame: &'static str,
+    scale: f64,
+) -> Group {
+    Group { name, entries, unit, frame, offset: 0.0, scale }
+}
+
+/// The observation's groups in order. "gate" is the frame of the target gate: x along the direction of crossing, y
+/// left, z up, origin at its centre.
+pub const LAYOUT: [Group; 11] = [
+    group("position", XYZ, "m", "gate", 0.1),
+    group("velocity", XYZ, "m/s", "gate", 0.1),
+    group("attitude", &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"], "1", "body axes in gate", 1.0),
+    group("angular_rate", XYZ, "rad/s", "gate", 0.1),
+    group("command", COMMANDS, "1", "filtered command u", 1.0),
+    group("action_1", COMMANDS, "1", "action one step ago", 1.0),
+    group("action_2", COMMANDS, "1", "action two steps ago", 1.0),
+    group("action_3", COMMANDS, "1", "action three steps ago", 1.0),
+    Group { name: "voltage", entries: &["V"], unit: "V", frame: "battery", offset: 23.0, scale: 1.0 },
+    group("next_gate", XYZ, "m", "gate", 0.1),
+    group("second_gate", XYZ, "m", "gate", 0.1),
+];
+
+/// Entries of an observation.
+pub const OBSERVATIONS: usize = {
+    let (mut n, mut i) = (0, 0);
+    while i < LAYOUT.len() {
+        n += LAYOUT[i].entries.len();
+        i += 1;
+    }
+    n
+};
+
+/// The observation of each lane of `block`, with `noise` on what an estimator would have to estimate.
+#[inline(always)]
+pub fn observe<L: Lane>(block: &Block<L>, noise: Option<&Noise<L>>) -> [L; OBSERVATIONS] {
+    let gate = &block.gate;
+    let mut position = block.in_gate;
+    let mut velocity = gate.rotate(block.state.velocity);
+    let axes = body_axes(block.state.attitude);
+    let mut attitude = axes.map(|axis| gate.rotate(axis));
+    let body_rates = block.state.body_rates(&block.parameters);
+    let mut rates: [L; 3] = std::array::from_fn(|i| {
+        attitude[0][i].mul_add(body_rates[0], attitude[1][i].mul_add(body_rates[1], attitude[2][i] * body_rates[2]))
+    });
+    let mut voltage = block.state.voltage;
+    if let Some(noise) = noise {
+        let add = |v: [L; 3], n: [L; 3]| -> [L; 3] { std::array::from_fn(|i| v[i] + n[i]) };
+        position = add(position, noise.position);
+        velocity = add(velocity, noise.velocity);
+        rates = add(rates, noise.rate);
+        attitude = attitude.map(|axis| add(axis, cross(noise.attitude, axis)));
+        voltage = voltage + noise.voltage;
+    }
+    let attitude = attitude.as_flattened();
+    let groups: [&[L]; LAYOUT.len()] = [
+        &position,
+        &velocity,
+        attitude,
+        &rates,
+        &block.state.command,
+        &block.history[0],
+        &block.history[1],
+        &block.history[2],
+        &[voltage],
+        &gate.next[0],
+        &gate.next[1],
+    ];
+    let mut out = [L::zero(); OBSERVATIONS];
+    let mut k = 0;
+    for (group, values) in LAYOUT.iter().zip(groups) {
+        debug_assert_eq!(group.entries.len(), values.len());
+        for &value in values {
+            let value = if group.offset == 0.0 { value } else { value - L::of(group.offset) };
+            out[k] = if group.scale == 1.0 { value } else { value * L::of(group.scale) };
+            k += 1;
+        }
+    }
+    out
+}
