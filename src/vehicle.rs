@@ -1,1 +1,157 @@
-//! Under construction.
+//! The vehicle: the parameters of the compact model, as identified from its flights (paper section 4.1).
+
+pub mod randomize;
+
+use crate::check::{BadInput, Check, Invalid};
+use crate::document::Library;
+use serde::{Deserialize, Serialize};
+
+const LIBRARY: Library = Library {
+    kind: "vehicle",
+    folder: "configs/vehicles",
+    builtin: &[
+        ("seed_class", include_str!("../configs/vehicles/seed_class.toml")),
+        ("a2rl_class", include_str!("../configs/vehicles/a2rl_class.toml")),
+    ],
+};
+
+/// A quadrotor seen from its acro interface: body rates and collective thrust in, motion out. Body axes are x forward,
+/// y left, z up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Vehicle {
+    pub name: String,
+    pub mass_kg: f64,
+    pub gravity_m_s2: f64,
+    /// Coefficients c0..c5 of Eq. 7, N: thrust = c0 + c1 u + c2 u^2 + c3 u^3 + c4 V + c5 u V, with the filtered thrust
+    /// command u in [-1, 1] and the battery voltage V in volts.
+    pub thrust_n: [f64; 6],
+    pub time_constant_s: TimeConstants,
+    pub max_rate_deg_s: MaxRates,
+    pub drag: Drag,
+    pub battery: Battery,
+}
+
+/// First-order response of each command (Eq. 6), s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimeConstants {
+    pub roll: f64,
+    pub pitch: f64,
+    pub yaw: f64,
+    pub thrust: f64,
+}
+
+/// Body rates at full command, deg/s.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MaxRates {
+    pub roll: f64,
+    pub pitch: f64,
+    pub yaw: f64,
+}
+
+/// Drag of an ellipsoid: half the density, times the coefficient, the area projected along the airflow and speed squared.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drag {
+    /// Along body x, y, z, m.
+    pub semi_axes_m: [f64; 3],
+    /// Without unit. Higher slows the top speed.
+    pub coefficient: f64,
+    pub air_density_kg_m3: f64,
+}
+
+/// Linear discharge.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Battery {
+    /// Voltage that a nominal flight starts with, V.
+    pub full_v: f64,
+    /// Voltage below which a flight ends, V.
+    pub empty_v: f64,
+    /// Change of voltage in flight, V/s; negative while it discharges.
+    pub rate_v_s: f64,
+}
+
+impl Vehicle {
+    /// Reads a vehicle by name or file.
+    pub fn load(name: &str) -> Result<Self, BadInput> {
+        LIBRARY.open(name)?.decode()
+    }
+
+    /// Time constants of roll, pitch, yaw and thrust, s.
+    pub fn time_constants(&self) -> [f64; 4] {
+        let TimeConstants { roll, pitch, yaw, thrust } = self.time_constant_s;
+        [roll, pitch, yaw, thrust]
+    }
+
+    /// Body rates at full command about x, y, z, rad/s.
+    pub fn max_rates_rad_s(&self) -> [f64; 3] {
+        let MaxRates { roll, pitch, yaw } = self.max_rate_deg_s;
+        [roll, pitch, yaw].map(f64::to_radians)
+    }
+
+    /// Thrust over weight at full command and full battery.
+    pub fn thrust_to_weight(&self) -> f64 {
+        self.thrust_at(1.0, self.battery.full_v) / (self.mass_kg * self.gravity_m_s2)
+    }
+
+    /// Eq. 7, for checks of the parameters only; the simulator's is in `dynamics`.
+    fn thrust_at(&self, u: f64, v: f64) -> f64 {
+        let [c0, c1, c2, c3, c4, c5] = self.thrust_n;
+        c0 + u * (c1 + u * (c2 + u * c3)) + v * (c4 + u * c5)
+    }
+
+    fn check_thrust(&self) -> Result<(), Invalid> {
+        let finite = self.thrust_n.iter().all(|c| c.is_finite());
+        let found = format!("{:?}", self.thrust_n);
+        Invalid::unless(finite, "thrust_n", &found, "six finite numbers", "")?;
+        for v in [self.battery.empty_v, self.battery.full_v] {
+            // Command in hundredths, from none to full.
+            let falls = (-100..100).find(|&u| {
+                let at = |u: i32| self.thrust_at(f64::from(u) / 100.0, v);
+                at(u + 1) <= at(u)
+            });
+            if let Some(u) = falls {
+                let found = format!("a thrust that falls at command {} and {v} V", f64::from(u) / 100.0);
+                let advice = "check the order and signs of c0..c5";
+                return Err(Invalid::new("thrust_n", found, "a thrust that grows with the command", advice));
+            }
+        }
+        let ratio = self.thrust_to_weight();
+        let found = format!("{ratio:.2} times the weight at full command and full battery");
+        Invalid::unless(ratio > 1.0, "thrust_n", found, "more than the weight", "check the mass and c0..c5")
+    }
+}
+
+impl Check for Vehicle {
+    fn check(&self) -> Result<(), Invalid> {
+        let TimeConstants { roll, pitch, yaw, thrust } = self.time_constant_s;
+        for (key, value) in [
+            ("mass_kg", self.mass_kg),
+            ("gravity_m_s2", self.gravity_m_s2),
+            ("time_constant_s.roll", roll),
+            ("time_constant_s.pitch", pitch),
+            ("time_constant_s.yaw", yaw),
+            ("time_constant_s.thrust", thrust),
+            ("max_rate_deg_s.roll", self.max_rate_deg_s.roll),
+            ("max_rate_deg_s.pitch", self.max_rate_deg_s.pitch),
+            ("max_rate_deg_s.yaw", self.max_rate_deg_s.yaw),
+            ("drag.air_density_kg_m3", self.drag.air_density_kg_m3),
+            ("battery.empty_v", self.battery.empty_v),
+        ] {
+            Invalid::unless_positive(key, value, "")?;
+        }
+        for (axis, value) in self.drag.semi_axes_m.into_iter().enumerate() {
+            Invalid::unless_positive(&format!("drag.semi_axes_m[{axis}]"), value, "")?;
+        }
+        Invalid::unless_not_negative("drag.coefficient", self.drag.coefficient, "0 switches drag off")?;
+        let Battery { full_v, empty_v, rate_v_s } = self.battery;
+        let expected = format!("more than empty_v = {empty_v}");
+        Invalid::unless(full_v.is_finite() && full_v > empty_v, "battery.full_v", full_v, &expected, "")?;
+        let discharges = rate_v_s.is_finite() && rate_v_s <= 0.0;
+        Invalid::unless(discharges, "battery.rate_v_s", rate_v_s, "zero or less", "discharge is negative")?;
+        self.check_thrust()
+    }
+}

@@ -1,0 +1,36 @@
+//! The spread of vehicles that a policy is trained on (paper Table 2).
+
+use crate::check::{Check, Invalid};
+use serde::{Deserialize, Serialize};
+
+/// Ranges `[low, high]`, drawn evenly and independently for each episode. Factors multiply the nominal value; `[1, 1]`
+/// switches one off. Mass and gravity stay as they are: mass cannot be told from thrust, and gravity is known.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RandomizeConfig {
+    /// Factors on the four time constants, each drawn for itself.
+    pub time_constant: [f64; 2],
+    /// Factors on the three maximum rates, each drawn for itself.
+    pub max_rate: [f64; 2],
+    /// Factor on the thrust.
+    pub thrust: [f64; 2],
+    /// Factor on the drag.
+    pub drag: [f64; 2],
+    /// Battery voltage at the start, V.
+    pub voltage_v: [f64; 2],
+}
+
+impl Check for RandomizeConfig {
+    fn check(&self) -> Result<(), Invalid> {
+        for (key, range, least) in [
+            ("time_constant", self.time_constant, 0.1),
+            ("max_rate", self.max_rate, 0.1),
+            ("thrust", self.thrust, 0.1),
+            ("drag", self.drag, 0.0),
+            ("voltage_v", self.voltage_v, 0.0),
+        ] {
+            Invalid::unless_range(key, range, least, "")?;
+        }
+        Ok(())
+    }
+}
