@@ -1,1 +1,89 @@
-//! Under construction.
+//! The configuration of a training run: one TOML file, changed from the command line, checked as a whole.
+//!
+//! A file needs to hold only what differs from the built-in `a2rl.toml`, which sets every key. Each table is a struct in the
+//! module that uses it; this module only puts them together.
+
+mod layers;
+mod setting;
+
+pub use crate::check::{BadInput, Check, Invalid};
+pub use setting::Setting;
+
+use crate::document::Library;
+use crate::env::EnvConfig;
+use crate::eval::EvalConfig;
+use crate::ppo::config::{BudgetConfig, PpoConfig};
+use crate::track::{GateKind, Track};
+use crate::vehicle::Vehicle;
+use layers::Layers;
+use serde::{Deserialize, Serialize};
+
+/// Name of the configuration that is used when none is named.
+pub const DEFAULT: &str = "a2rl.toml";
+
+const LIBRARY: Library =
+    Library { kind: "configuration", folder: "configs", builtin: &[("a2rl", include_str!("../configs/a2rl.toml"))] };
+
+/// Everything that decides the outcome of a training run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// Track to race on: name or file.
+    pub track: String,
+    /// Vehicle to race with: name or file.
+    pub vehicle: String,
+    /// Where all random numbers start: same seed, same result, whatever the number of threads.
+    pub seed: u64,
+    pub budget: BudgetConfig,
+    pub env: EnvConfig,
+    pub ppo: PpoConfig,
+    pub eval: EvalConfig,
+}
+
+impl Config {
+    /// Finds `name` in the working directory, in `configs/` or among the built-in ones, applies `settings` in order, and
+    /// checks the result. Keys that neither sets are those of the built-in `a2rl.toml`.
+    pub fn load(name: &str, settings: &[Setting]) -> Result<Self, BadInput> {
+        Layers { base: LIBRARY.built_in(DEFAULT)?, file: LIBRARY.open(name)?, settings }.resolve()
+    }
+
+    /// The track it names.
+    pub fn load_track(&self) -> Result<Track, BadInput> {
+        Track::load(&self.track)
+    }
+
+    /// The vehicle it names.
+    pub fn load_vehicle(&self) -> Result<Vehicle, BadInput> {
+        Vehicle::load(&self.vehicle)
+    }
+
+    /// Checks what only the configuration, the track and the vehicle together can violate.
+    pub fn check_against(&self, track: &Track, vehicle: &Vehicle) -> Result<(), Invalid> {
+        let narrowest = track.gates.iter().filter(|gate| gate.kind == GateKind::Physical).map(|gate| gate.radius_m);
+        let narrowest = narrowest.fold(f64::INFINITY, f64::min);
+        let radius = self.env.gate_radius_m;
+        let expected = format!("at most {narrowest} m, the narrowest gate of {}", track.name);
+        Invalid::unless(radius <= narrowest, "env.gate_radius_m", radius, &expected, "train with less than is scored")?;
+        let [low, high] = self.env.randomize.voltage_v;
+        let battery = &vehicle.battery;
+        let expected = format!("within {} to {} V, the battery of {}", battery.empty_v, battery.full_v, vehicle.name);
+        let inside = battery.empty_v <= low && high <= battery.full_v;
+        Invalid::unless(inside, "env.randomize.voltage_v", format!("[{low}, {high}]"), &expected, "narrow the range")
+    }
+
+    /// The configuration as a complete TOML file, from which the run can be repeated.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("a checked configuration consists of tables, numbers and strings only")
+    }
+}
+
+impl Check for Config {
+    fn check(&self) -> Result<(), Invalid> {
+        let largest = i64::MAX as u64;
+        Invalid::unless(self.seed <= largest, "seed", self.seed, &format!("at most {largest}"), "TOML has no larger")?;
+        self.budget.check().map_err(|invalid| invalid.within("budget"))?;
+        self.env.check().map_err(|invalid| invalid.within("env"))?;
+        self.ppo.check().map_err(|invalid| invalid.within("ppo"))?;
+        self.eval.check().map_err(|invalid| invalid.within("eval"))
+    }
+}
