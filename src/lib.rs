@@ -1,4 +1,5 @@
 //! skeleton
+pub mod bench;
 pub mod check;
 pub mod config;
 pub mod document;
