@@ -11,6 +11,7 @@ pub mod nn;
 pub mod peak;
 pub mod policy;
 pub mod ppo;
+pub mod report;
 pub mod rng;
 pub mod sim;
 pub mod stats;
