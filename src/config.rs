@@ -47,6 +47,16 @@ impl Config {
         Layers { base: LIBRARY.built_in(DEFAULT)?, file: LIBRARY.open(name)?, settings }.resolve()
     }
 
+    /// The track it names.
+    pub fn load_track(&self) -> Result<Track, BadInput> {
+        Track::load(&self.track)
+    }
+
+    /// The vehicle it names.
+    pub fn load_vehicle(&self) -> Result<Vehicle, BadInput> {
+        Vehicle::load(&self.vehicle)
+    }
+
     /// Checks what only the configuration, the track and the vehicle together can violate.
     pub fn check_against(&self, track: &Track, vehicle: &Vehicle) -> Result<(), Invalid> {
         let narrowest = track.gates.iter().filter(|gate| gate.kind == GateKind::Physical).map(|gate| gate.radius_m);

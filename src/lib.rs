@@ -1,5 +1,6 @@
 //! skeleton
 pub mod check;
+pub mod config;
 pub mod document;
 pub mod dynamics;
 pub mod env;

@@ -43,6 +43,7 @@ fn plain(expected: &str) -> String {
         "f64" | "f32" => "a number",
         "u64" | "u32" | "usize" => "a whole number, zero or more",
         "i64" => "a whole number",
+        other if other.starts_with("struct ") => "a table",
         other => other,
     }
     .into()

@@ -88,10 +88,12 @@ impl PpoConfig {
             let found = format!("{environments} environments x {rollout} steps");
             return Err(Invalid::new("rollout", found, "at most 2^28 samples a rollout", "lower one of them"));
         };
-        let works = |minibatches: &usize| *minibatches > 0 && samples % (minibatches * TILE) == 0;
+        // Whole tiles are dealt out to the minibatches.
+        let tiles = samples / TILE;
+        let works = |minibatches: &usize| tiles.is_multiple_of(*minibatches) && *minibatches > 0;
         if !works(&minibatches) {
-            let below = (1..minibatches).rev().find(works);
-            let above = (minibatches + 1..=samples / TILE).find(works);
+            let below = (1..minibatches.min(tiles + 1)).rev().find(works);
+            let above = (minibatches.saturating_add(1)..=tiles).find(works);
             let nearest: Vec<_> = [below, above].into_iter().flatten().map(|n| n.to_string()).collect();
             let expected = format!("a divisor of {samples} samples that leaves minibatches of a multiple of {TILE}");
             let advice = format!("the nearest are {}", nearest.join(" and "));
