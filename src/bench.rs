@@ -1,207 +1,169 @@
-//! How fast the machine simulates and trains: the work that is timed, and how.
+//! How fast this machine simulates and trains, and how near that is to what it could do at best.
+//!
+//! Every figure is steps of single vehicles a second, the best of several rounds, each long enough to time.
 
-use crate::config::Setup;
+use crate::config::Config;
 use crate::dynamics::{Factors, Parameters, State};
-use crate::env::Race;
-use crate::env::observe::OBSERVATIONS;
+use crate::env::{DT, Race};
 use crate::lane::{Kernel, LANES, Lane32, Level, dispatch};
-use crate::nn::Network;
+use crate::nn::{HIDDEN, TILE_BLOCKS};
 use crate::peak;
 use crate::policy::ACTIONS;
 use crate::ppo::Environment;
-use crate::ppo::config::PpoConfig;
 use crate::ppo::train::Training;
-use crate::rng::{Philox, Stream};
-use crate::run::provenance::processors;
 use crate::sim::Batch;
+use crate::track::Track;
+use crate::vehicle::Vehicle;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// Steps that a call to [`Physics::run`] or [`Flying::run`] makes in each vehicle.
-const STEPS: usize = 64;
-
-/// Environment steps a second on one thread and on all.
+/// A figure on one thread and on all.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Rate {
+pub struct Pair {
     pub one_thread: f64,
     pub all_threads: f64,
 }
 
-/// What a machine does.
+/// The measured figures.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
-    /// The dynamics alone: commands held, no noise, no observation, no track.
-    pub physics_steps_per_s: Rate,
-    /// The environment: observation, noise, dynamics, gates, reward, ends and resets, under a held command; no policy.
-    pub environment_steps_per_s: Rate,
-    /// The environment flown by the stochastic policy, everything stored for learning.
-    pub rollout_steps_per_s: Rate,
-    /// Rollout, advantages and all epochs of the update, as `racer train` does it.
-    pub training_steps_per_s: Rate,
-    /// Single-precision operations a second, all threads, a multiply-add counted as two.
-    pub peak_flops_per_s: f64,
-    /// Share of that which the networks' multiply-adds reach in training, all threads; everything else counts as nothing.
+    /// The model alone ([`crate::dynamics::step`]), commands held for a rollout's length, 2048 vehicles a thread.
+    pub physics_steps_per_s: Pair,
+    /// The whole environment: physics, gates, reward, resets, observation and all noise, under held commands; no policy.
+    pub environment_steps_per_s: Pair,
+    /// The environment with the policy: what training collects experience with.
+    pub rollout_steps_per_s: Pair,
+    /// Full training: rollout, advantages and all epochs of the update.
+    pub training_steps_per_s: Pair,
+    /// Single-precision multiply-add peak, operations a second, measured between the rounds.
+    pub peak_flops_per_s: Pair,
+    /// Share of the peak that training reaches on all threads, counting the networks' multiply-adds and nothing else.
     pub training_peak_share: f64,
+    /// The same on one thread.
+    pub training_peak_share_one_thread: f64,
+    /// Operations of one environment step of training.
+    pub training_flops_per_step: f64,
     pub threads: usize,
     pub simd: String,
 }
 
-/// Measures everything for about `time` a figure and thread count.
-pub fn measure(setup: &Setup, level: Level, threads: usize, time: Duration) -> anyhow::Result<Figures> {
-    let pools = [pool(1)?, pool(threads)?];
-    let on_both = |run: &mut (dyn FnMut() -> u64 + Send)| {
-        let [one_thread, all_threads] = [&pools[0], &pools[1]].map(|pool| pool.install(|| per_second(time, &mut *run)));
-        Rate { one_thread, all_threads }
+/// Operations of the networks for one environment step of training: one forward pass to collect it, and forward, weight
+/// gradients and input gradients (not of the first layer) in every epoch, a multiply-add counted as two.
+pub fn training_flops_per_step(observations: usize, epochs: usize) -> f64 {
+    let network = |outputs: usize| {
+        let upper = HIDDEN * HIDDEN + HIDDEN * outputs;
+        let forward = observations * HIDDEN + upper;
+        (forward, 2 * forward + upper)
     };
-    let race = Race::new(&setup.config.env, &setup.track, &setup.vehicle, setup.config.seed);
-    let ppo = &setup.config.ppo;
-    let (mut physics, mut flying) = (Physics::new(&race, ppo.environments), Flying::new(&race, ppo.environments));
-    let mut training = Training::new(level, &race, ppo, setup.config.seed);
-    let peak_flops_per_s = pools[1].install(|| peak::flops_per_s(level, time));
-    let physics_steps_per_s = on_both(&mut || physics.run(level));
-    let environment_steps_per_s = on_both(&mut || flying.run(level));
-    let rollout_steps_per_s = on_both(&mut || {
-        training.collect();
-        training.batch() as u64
-    });
-    let training_steps_per_s = on_both(&mut || {
-        training.iterate(0.0);
-        training.batch() as u64
-    });
-    let training_peak_share = training_steps_per_s.all_threads * flop_per_step(ppo) / peak_flops_per_s;
-    Ok(Figures {
-        physics_steps_per_s,
-        environment_steps_per_s,
-        rollout_steps_per_s,
-        training_steps_per_s,
-        peak_flops_per_s,
-        training_peak_share,
+    let (actor, critic) = (network(ACTIONS), network(1));
+    2.0 * ((actor.0 + critic.0) + epochs * (actor.1 + critic.1)) as f64
+}
+
+/// Measures for about `time` in all.
+pub fn measure(
+    config: &Config,
+    track: &Track,
+    vehicle: &Vehicle,
+    level: Level,
+    threads: usize,
+    time: Duration,
+) -> Figures {
+    let race = Race::new(&config.env, track, vehicle, config.seed);
+    let part = time / 10;
+    let on = |threads: usize| -> [f64; 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+        pool.install(|| {
+            let physics = physics(&race, level, threads, config.ppo.rollout, part);
+            let environment = environment(&race, level, threads, config.ppo.rollout, part);
+            let mut training = Training::new(level, &race, &config.ppo, config.seed);
+            let batch = training.batch() as f64;
+            let rollout = batch / best(part, || training.collect());
+            // The peak is taken before and after: clocks drift.
+            let before = peak::flops_per_s(level, part / 2);
+            let trained = batch / best(part, || training.iterate(0.0));
+            [physics, environment, rollout, trained, before.max(peak::flops_per_s(level, part / 2))]
+        })
+    };
+    let (one, all) = (on(1), on(threads));
+    let pair = |i: usize| Pair { one_thread: one[i], all_threads: all[i] };
+    let flops = training_flops_per_step(race.observations(), config.ppo.epochs);
+    Figures {
+        physics_steps_per_s: pair(0),
+        environment_steps_per_s: pair(1),
+        rollout_steps_per_s: pair(2),
+        training_steps_per_s: pair(3),
+        peak_flops_per_s: pair(4),
+        training_peak_share: all[3] * flops / all[4],
+        training_peak_share_one_thread: one[3] * flops / one[4],
+        training_flops_per_step: flops,
         threads,
         simd: level.to_string(),
-    })
-}
-
-/// Threads to use: those asked for, or all that this process may use.
-pub fn threads(asked: Option<usize>) -> usize {
-    asked.unwrap_or_else(processors)
-}
-
-/// A thread pool; everything that runs in parallel is run in one.
-pub fn pool(threads: usize) -> anyhow::Result<rayon::ThreadPool> {
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?)
-}
-
-/// Steps a second of `run`, which returns how many it made. The first call warms up and does not count.
-fn per_second(time: Duration, run: &mut (dyn FnMut() -> u64 + Send)) -> f64 {
-    run();
-    let (started, mut steps) = (Instant::now(), 0);
-    loop {
-        steps += run();
-        let elapsed = started.elapsed();
-        if elapsed >= time {
-            return steps as f64 / elapsed.as_secs_f64();
-        }
     }
 }
 
-/// Operations of the networks' multiply-adds for one environment step of training: the policy and the critic once in the
-/// rollout, and in each epoch forward, the gradient of every weight, and of every input but the first layer's.
-pub fn flop_per_step(ppo: &PpoConfig) -> f64 {
-    let Network { actor, critic, .. } = Network::<f32>::zeros(OBSERVATIONS);
-    let weights = |shape: &crate::nn::mlp::Shape, from: usize| (from..3).map(|l| shape.weights(l).len()).sum::<usize>();
-    let forward = weights(&actor, 0) + weights(&critic, 0);
-    let inputs = weights(&actor, 1) + weights(&critic, 1);
-    2.0 * (forward + ppo.epochs * (2 * forward + inputs)) as f64
+/// Seconds of the fastest of the calls that fit into `time`, at least two.
+fn best<T>(time: Duration, mut work: impl FnMut() -> T) -> f64 {
+    let started = Instant::now();
+    let (mut best, mut rounds) = (f64::INFINITY, 0);
+    while rounds < 2 || started.elapsed() < time {
+        let begin = Instant::now();
+        black_box(work());
+        best = best.min(begin.elapsed().as_secs_f64());
+        rounds += 1;
+    }
+    best
 }
 
-/// Vehicles that fly, commands held.
-pub struct Physics {
-    batch: Batch,
-    actions: Vec<[f32; ACTIONS]>,
+fn physics(race: &Race, level: Level, threads: usize, steps: usize, time: Duration) -> f64 {
+    let n = 2048 * threads;
+    let start = State {
+        position: [0.0; 3],
+        velocity: [5.0, 0.0, 0.0],
+        attitude: [1.0, 0.0, 0.0, 0.0],
+        command: [0.0; 4],
+        voltage: race.vehicle.battery.full_v,
+    };
+    let parameters = Parameters::new(&race.vehicle, &Factors::NOMINAL, DT);
+    let mut batch = Batch::new(&vec![(start, parameters); n]);
+    let actions: Vec<_> = (0..n).map(|i| [0.1, -0.1, 0.01 * (i % 10) as f32, race.hover_command as f32]).collect();
+    (n * steps) as f64 / best(time, || batch.advance(level, &actions, steps))
 }
 
-impl Physics {
-    pub fn new(race: &Race, vehicles: usize) -> Self {
-        let mut rng = Philox::new(1).sequence(Stream::Evaluation, 0, 0);
-        let state = State {
-            position: [0.0; 3],
-            velocity: [0.0; 3],
-            attitude: [1.0, 0.0, 0.0, 0.0],
-            command: [0.0; 4],
-            voltage: race.vehicle.battery.full_v,
-        };
-        let parameters = Parameters::new(&race.vehicle, &Factors::NOMINAL, race.dt);
-        let actions = (0..vehicles).map(|_| std::array::from_fn(|_| rng.uniform([-0.2, 0.2]) as f32)).collect();
-        Self { batch: Batch::new(&vec![(state, parameters); vehicles]), actions }
-    }
-
-    /// Some steps on the current rayon pool; returns how many, over all vehicles.
-    pub fn run(&mut self, level: Level) -> u64 {
-        self.batch.advance(level, &self.actions, STEPS);
-        (self.actions.len() * STEPS) as u64
-    }
-}
-
-/// Environments that are flown with the thrust that carries the vehicle, and no policy.
-pub struct Flying<'a> {
-    race: &'a Race,
-    blocks: Vec<(<Race as Environment>::Saved, <Race as Environment>::Tally)>,
-}
-
-impl<'a> Flying<'a> {
-    pub fn new(race: &'a Race, environments: usize) -> Self {
-        let firsts = (0..environments as u32).step_by(LANES);
-        Self { race, blocks: firsts.map(|first| (race.start(first), Default::default())).collect() }
-    }
-
-    /// Some steps on the current rayon pool; returns how many, over all environments.
-    pub fn run(&mut self, level: Level) -> u64 {
-        let race = self.race;
-        self.blocks.par_iter_mut().for_each(|block| dispatch(level, Fly { race, block }));
-        (self.blocks.len() * LANES * STEPS) as u64
-    }
+fn environment(race: &Race, level: Level, threads: usize, steps: usize, time: Duration) -> f64 {
+    let blocks = 2048 / LANES * threads;
+    let mut saved: Vec<_> = (0..blocks).map(|b| race.start((b * LANES) as u32)).collect();
+    let seconds = best(time, || {
+        saved.par_chunks_mut(TILE_BLOCKS).for_each(|tile| dispatch(level, Fly { race, tile, steps }));
+    });
+    (blocks * LANES * steps) as f64 / seconds
 }
 
 struct Fly<'a> {
     race: &'a Race,
-    block: &'a mut (<Race as Environment>::Saved, <Race as Environment>::Tally),
+    tile: &'a mut [<Race as Environment>::Saved],
+    steps: usize,
 }
 
 impl Kernel for Fly<'_> {
     type Output = ();
-
     #[inline(always)]
     fn run<L: Lane32>(self) {
-        let (race, (saved, tally)) = (self.race, self.block);
-        let mut block = race.load::<L>(saved);
-        let action = [L::zero(), L::zero(), L::zero(), L::of(race.hover_command)];
-        let mut seen = [0.0f32; OBSERVATIONS * LANES];
-        *tally = Default::default();
-        for _ in 0..STEPS {
-            Environment::observe(race, &block, &mut seen, LANES);
-            let step = Environment::step(race, &mut block, action, tally);
-            race.reset(&mut block, step.terminated | step.truncated, tally);
-            // Otherwise the compiler would see that nobody looks at the observation.
-            std::hint::black_box(&seen);
+        let race = self.race;
+        let mut seen = vec![0.0f32; race.observations() * LANES];
+        let mut tally = Default::default();
+        let action = [0.02, -0.02, 0.01, race.hover_command].map(L::of);
+        for saved in self.tile {
+            let mut block = race.load::<L>(saved);
+            for _ in 0..self.steps {
+                race.observe(&block, &mut seen, LANES);
+                black_box(&mut seen);
+                let step = Environment::step(race, &mut block, action, &mut tally);
+                race.reset(&mut block, step.terminated | step.truncated, &mut tally);
+            }
+            *saved = race.save(&block);
         }
-        *saved = race.save(&block);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::nn::HIDDEN;
-
-    /// With 41 observations: forward 41 x 64 + 64 x 64 + 64 x 4 and x 1, as counted by hand.
-    #[test]
-    fn operations_are_counted_as_by_hand() {
-        let (actor, critic) = (41 * 64 + 64 * 64 + 64 * 4, 41 * 64 + 64 * 64 + 64);
-        let inputs = (64 * 64 + 64 * 4) + (64 * 64 + 64);
-        let ppo = Setup::load("a2rl", &[]).unwrap().config.ppo;
-        assert_eq!((OBSERVATIONS, HIDDEN, ppo.epochs), (41, 64, 4));
-        let expected = 2 * (actor + critic) + 4 * 2 * (2 * (actor + critic) + inputs);
-        assert_eq!(flop_per_step(&ppo), expected as f64);
+        black_box(&tally);
     }
 }

@@ -3,6 +3,7 @@
 mod bench;
 mod eval;
 mod interrupt;
+mod pool;
 mod progress;
 mod table;
 mod train;
@@ -81,14 +82,6 @@ fn print(text: &str) -> io::Result<()> {
 fn tell(text: &str) {
     // Where even that fails there is nobody left to tell.
     let _ = writeln!(io::stderr(), "{text}");
-}
-
-/// Threads to use, of which there is at least one.
-fn parse_threads(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(threads @ 1..=1024) => Ok(threads),
-        _ => Err("expected 1 to 1024".into()),
-    }
 }
 
 #[cfg(test)]

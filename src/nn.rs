@@ -1,6 +1,7 @@
 //! The policy's and the critic's networks.
 
 pub mod adam;
+pub mod aligned;
 pub mod gemm;
 pub mod init;
 pub mod mlp;

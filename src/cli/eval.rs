@@ -1,10 +1,11 @@
 //! `racer eval`: what a policy is worth.
 
+use super::pool::{pool, threads};
 use super::{Outcome, table, tell};
-use crate::bench::{pool, threads};
 use crate::check::BadInput;
 use crate::env::Race;
-use crate::eval::evaluation::{Evaluation, Starts};
+use crate::env::reset::Place;
+use crate::eval::{Report, benchmark};
 use crate::fsio::Reserved;
 use crate::lane::Level;
 use crate::run::{self, Found};
@@ -36,7 +37,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Threads [default: all processors]; changes the speed, not the result
-    #[arg(long, value_parser = super::parse_threads)]
+    #[arg(long, value_parser = super::pool::parse_threads)]
     threads: Option<usize>,
 }
 
@@ -51,16 +52,6 @@ enum Start {
     Both,
 }
 
-impl From<Start> for Starts {
-    fn from(start: Start) -> Self {
-        match start {
-            Start::Fixed => Starts::Fixed,
-            Start::Random => Starts::Random,
-            Start::Both => Starts::Both,
-        }
-    }
-}
-
 fn parse_share(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
@@ -70,7 +61,7 @@ fn parse_share(text: &str) -> Result<f64, String> {
 
 /// What is written and, with `--json`, printed.
 #[derive(Serialize)]
-struct Report<'a> {
+struct File<'a> {
     snapshot: String,
     track: &'a str,
     vehicle: &'a str,
@@ -79,7 +70,7 @@ struct Report<'a> {
     seed: u64,
     max_steps: usize,
     #[serde(flatten)]
-    evaluation: &'a Evaluation,
+    report: &'a Report,
 }
 
 /// Evaluates, prints and writes.
@@ -94,32 +85,35 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     config.agents = args.agents.map_or(config.agents, |agents| agents as usize);
     let file = Reserved::new(&args.out.clone().unwrap_or_else(|| default_file(&found, args.start, config.agents)))?;
 
-    let race = Race::new(&about.env, &about.track, &about.vehicle, about.seed).scored(&about.track);
-    let fly = || Evaluation::of(Level::best(), &race, &about.track, &network, args.start.into(), &config);
-    let evaluation = pool(threads(args.threads))?.install(fly);
-    let report = Report {
+    let race = Race::new(&about.env, &about.track, &about.vehicle, about.seed);
+    let fly = |place| benchmark(Level::best(), &race, &about.track, &network, place, &config).0;
+    let report = pool(threads(args.threads))?.install(|| Report {
+        fixed: (args.start != Start::Random).then(|| fly(Place::Pad)),
+        random: (args.start != Start::Fixed).then(|| fly(Place::Spline)),
+    });
+    let content = File {
         snapshot: found.snapshot.display().to_string(),
         track: &about.track.name,
         vehicle: &about.vehicle.name,
         steps: about.steps,
         seed: about.seed,
         max_steps: config.max_steps,
-        evaluation: &evaluation,
+        report: &report,
     };
-    let json = serde_json::to_string_pretty(&report)?;
+    let json = serde_json::to_string_pretty(&content)?;
     let written = file.write(format!("{json}\n").as_bytes())?;
     if args.json {
         super::print(&json)?;
     } else {
-        let title = format!("{} on {} after {:.1} M steps", report.snapshot, report.track, about.steps as f64 / 1e6);
-        super::print(&format!("{title}\n\n{}", table::evaluation(&evaluation)))?;
+        let title = format!("{} on {} after {:.1} M steps", content.snapshot, content.track, about.steps as f64 / 1e6);
+        super::print(&format!("{title}\n\n{}", table::report(&report)))?;
     }
     tell(&format!("written to {}", written.display()));
-    Ok(judge(args.require, &evaluation))
+    Ok(judge(args.require, &report))
 }
 
-fn judge(require: Option<f64>, evaluation: &Evaluation) -> Outcome {
-    let (completion, Some(share)) = (evaluation.completion(), require) else { return Outcome::Done };
+fn judge(require: Option<f64>, report: &Report) -> Outcome {
+    let (completion, Some(share)) = (report.completion(), require) else { return Outcome::Done };
     if completion >= share {
         return Outcome::Done;
     }

@@ -1,7 +1,8 @@
-//! Evaluations as text.
+//! Evaluation reports as text.
 
-use crate::eval::evaluation::{DEPLOYABLE, Evaluation};
-use crate::eval::score::Benchmark;
+use crate::eval::Report;
+use crate::eval::choose::DEPLOYABLE;
+use crate::eval::score::{Benchmark, LapTime};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -9,8 +10,8 @@ use std::fmt::Write;
 const FAILURES: usize = 5;
 
 /// The benchmarks side by side, a line each metric.
-pub fn evaluation(evaluation: &Evaluation) -> String {
-    let columns: Vec<(&str, &Benchmark)> = [("fixed start", &evaluation.fixed), ("random start", &evaluation.random)]
+pub fn report(report: &Report) -> String {
+    let columns: Vec<(&str, &Benchmark)> = [("fixed start", &report.fixed), ("random start", &report.random)]
         .into_iter()
         .filter_map(|(name, benchmark)| Some((name, benchmark.as_ref()?)))
         .collect();
@@ -19,9 +20,8 @@ pub fn evaluation(evaluation: &Evaluation) -> String {
         let cells: String = columns.iter().map(|(_, benchmark)| format!("{:>16}", cell(benchmark))).collect();
         let _ = writeln!(text, "{name:<28}{cells}");
     };
-    let lap_time = |benchmark: &Benchmark, show: &dyn Fn(crate::eval::score::LapTime) -> String| {
-        benchmark.lap_time_s.map_or("-".into(), show)
-    };
+    let lap_time =
+        |benchmark: &Benchmark, show: &dyn Fn(LapTime) -> String| benchmark.lap_time_s.map_or("-".into(), show);
     line("agents", &|b| b.agents.to_string());
     line("lap completion", &|b| percent(b.lap_completion));
     line("lap time, median", &|b| lap_time(b, &|time| format!("{:.2} s", time.median)));
@@ -40,7 +40,7 @@ pub fn evaluation(evaluation: &Evaluation) -> String {
     }
     let header: String = columns.iter().map(|(name, _)| format!("{name:>16}")).collect();
     let failures: String = columns.iter().map(|(name, benchmark)| failures(name, benchmark)).collect();
-    let criterion = evaluation.fixed.as_ref().map(|fixed| {
+    let criterion = report.fixed.as_ref().map(|fixed| {
         let met = if fixed.lap_completion >= DEPLOYABLE { "met" } else { "not met" };
         format!("\ncriterion for deployment, {} of fixed starts: {met}", percent(DEPLOYABLE))
     });

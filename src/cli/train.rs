@@ -1,13 +1,15 @@
 //! `racer train`: a policy from a track.
 
+use super::pool::{pool, threads};
 use super::progress::{Progress, Status, clock};
 use super::{Outcome, interrupt, table, tell};
-use crate::bench::{pool, threads};
 use crate::check::BadInput;
 use crate::config::{DEFAULT, Setting, Setup};
 use crate::env::Race;
+use crate::env::reset::Place;
 use crate::env::tally::Tally;
-use crate::eval::evaluation::{Evaluation, Starts, best};
+use crate::eval::choose::best;
+use crate::eval::{Report, benchmark};
 use crate::lane::Level;
 use crate::ppo::train::{Flow, Iteration, Observer, Trained, train};
 use crate::run::metrics::{Row, to_csv};
@@ -44,7 +46,7 @@ pub struct Args {
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=i64::MAX as u64))]
     steps: Option<u64>,
     /// Threads [default: all processors]; changes the speed, not the result
-    #[arg(long, value_parser = super::parse_threads)]
+    #[arg(long, value_parser = super::pool::parse_threads)]
     threads: Option<usize>,
     /// New folder for the run [default: one below runs/, named by time and track]
     #[arg(long, value_name = "DIR")]
@@ -92,7 +94,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         if trained.stopped {
             return stopped(&run, &trained);
         }
-        evaluate(&run, &setup, level, &race.scored(track), &trained, &policies)
+        evaluate(&run, &setup, level, &race, &trained, &policies)
     })
 }
 
@@ -183,7 +185,7 @@ struct Entry<'a> {
     steps: u64,
     seconds: f64,
     #[serde(flatten)]
-    evaluation: &'a Evaluation,
+    report: &'a Report,
 }
 
 /// Benchmarks all snapshots, keeps the best.
@@ -196,21 +198,21 @@ fn evaluate(
     policies: &[(String, Snapshot)],
 ) -> anyhow::Result<Outcome> {
     tell(&format!("evaluating {} snapshots", policies.len()));
-    let mut evaluations = Vec::new();
+    let mut reports = Vec::new();
     for (_, policy) in policies {
         if interrupt::asked() {
             return stopped(run, trained);
         }
-        let config = &setup.config.eval;
-        evaluations.push(Evaluation::of(level, race, &setup.track, &policy.network, Starts::Both, config));
+        let fly = |place| benchmark(level, race, &setup.track, &policy.network, place, &setup.config.eval).0;
+        reports.push(Report { fixed: Some(fly(Place::Pad)), random: Some(fly(Place::Spline)) });
     }
-    let entries = policies.iter().zip(&evaluations).map(|((name, policy), evaluation)| {
+    let entries = policies.iter().zip(&reports).map(|((name, policy), report)| {
         let &About { steps, seconds, .. } = &policy.about;
-        Entry { snapshot: name, steps, seconds, evaluation }
+        Entry { snapshot: name, steps, seconds, report }
     });
     let entries: Vec<_> = entries.collect();
     run.write("snapshots.json", serde_json::to_string_pretty(&entries)? + "\n")?;
-    let Some(chosen) = best(&evaluations) else { anyhow::bail!("the training took no snapshot") };
+    let Some(chosen) = best(&reports) else { anyhow::bail!("the training took no snapshot") };
     run.write(POLICY, policies[chosen].1.to_bytes()?)?;
     run.write("evaluation.json", serde_json::to_string_pretty(&entries[chosen])? + "\n")?;
 
@@ -223,7 +225,7 @@ fn evaluate(
         million / seconds.max(1e-9),
         policies.len(),
         policies[chosen].1.about.steps as f64 / 1e6,
-        table::evaluation(&evaluations[chosen]),
+        table::report(&reports[chosen]),
     ))?;
     Ok(Outcome::Done)
 }

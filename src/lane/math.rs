@@ -62,7 +62,7 @@ pub fn tanh<R: Single>(x: R) -> R {
     let y = x * x;
     let p = [0.999_998_966_828_175_4, 0.123_220_517_444_534_36, 0.002_293_086_120_959_956, 3.995_859_013_041_447e-6];
     let q = [1.0, 0.456_546_115_714_809, 0.021_151_601_239_747_488, 0.000_143_984_169_425_929_43];
-    x * horner(y, p) / horner(y, q)
+    (x * horner(y, p)).divide_fast(horner(y, q))
 }
 
 /// Sine and cosine of `x` turns: reduced to an eighth of a turn, then swapped and signed by quadrant.

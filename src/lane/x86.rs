@@ -227,6 +227,14 @@ impl Single for Avx512 {
         Self(unsafe { _mm512_scalef_ps(_mm512_set1_ps(1.0), self.0) })
     }
     #[inline(always)]
+    fn divide_fast(self, b: Self) -> Self {
+        // 14 bits from the table, 28 after one Newton step: a third of a division's time.
+        // SAFETY: see the module's page.
+        let guess = Self(unsafe { _mm512_rcp14_ps(b.0) });
+        let error = (-b).mul_add(guess, Self::one());
+        self * error.mul_add(guess, guess)
+    }
+    #[inline(always)]
     fn split_exponent(self) -> (Self, Self) {
         // SAFETY: see the module's page.
         unsafe {

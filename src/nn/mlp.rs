@@ -3,6 +3,7 @@
 //! Activations lie `[feature][64]`: a sample is a lane, so environments, network and loss share one layout and only the
 //! weight gradients, which sum over samples, need a transpose.
 
+use super::aligned::Aligned;
 use super::gemm::{Broadcast, Start, multiply, transpose};
 use super::{HIDDEN, TILE_BLOCKS, TILE_SAMPLES};
 use crate::lane::{LANES, Lane};
@@ -44,13 +45,13 @@ impl Shape {
 /// Activations of the hidden layers, `[64][64]` each.
 #[derive(Clone)]
 pub struct Hidden<E> {
-    first: Vec<E>,
-    second: Vec<E>,
+    first: Aligned<E>,
+    second: Aligned<E>,
 }
 
-impl<E: Default + Clone> Default for Hidden<E> {
+impl<E: Default + Copy> Default for Hidden<E> {
     fn default() -> Self {
-        let tile = vec![E::default(); HIDDEN * TILE_SAMPLES];
+        let tile = Aligned::zeros(HIDDEN * TILE_SAMPLES);
         Hidden { first: tile.clone(), second: tile }
     }
 }
@@ -85,13 +86,13 @@ fn tanh<L: Lane>(x: &mut [L::Elem]) {
 /// Scratch of the backward pass.
 #[derive(Clone)]
 pub struct Backward<E> {
-    delta: Vec<E>,
-    turned: Vec<E>,
+    delta: Aligned<E>,
+    turned: Aligned<E>,
 }
 
-impl<E: Default + Clone> Default for Backward<E> {
+impl<E: Default + Copy> Default for Backward<E> {
     fn default() -> Self {
-        let tile = vec![E::default(); HIDDEN * TILE_SAMPLES];
+        let tile = Aligned::zeros(HIDDEN * TILE_SAMPLES);
         Backward { delta: tile.clone(), turned: tile }
     }
 }
