@@ -16,13 +16,13 @@ impl Reserved {
     /// Makes sure that `path` does not exist and that its folder can be written to.
     pub fn new(path: &Path) -> Result<Self, BadInput> {
         if path.exists() {
-            let advice = "choose another path; nothing existing is overwritten";
+            let advice = "choose another path (--out); nothing existing is overwritten";
             return Err(BadInput::new(path.display(), "a file that exists", "a path to a new file", advice));
         }
         match temporary(folder_of(path)) {
             Ok(file) => Ok(Self { file, path: path.into() }),
             Err(error) => {
-                Err(BadInput::new(path.display(), error, "a folder that can be written to", "choose another path"))
+                Err(BadInput::new(path.display(), error, "a folder that can be written to", "choose another path (--out)"))
             }
         }
     }
@@ -50,18 +50,18 @@ pub fn new_folder(path: &Path) -> Result<(), BadInput> {
         Err(BadInput::new(path.display(), found, "a folder that is new or empty and can be written to", advice))
     };
     if let Err(error) = std::fs::create_dir_all(path) {
-        return refuse(error.to_string(), "choose another path");
+        return refuse(error.to_string(), "choose another path (--out)");
     }
     match std::fs::read_dir(path).map(|mut entries| entries.next().is_some()) {
         Ok(false) => {}
         Ok(true) => {
-            return refuse("a folder with files in it".into(), "choose another path; nothing existing is overwritten");
+            return refuse("a folder with files in it".into(), "choose another path (--out); nothing existing is overwritten");
         }
-        Err(error) => return refuse(error.to_string(), "choose another path"),
+        Err(error) => return refuse(error.to_string(), "choose another path (--out)"),
     }
     match temporary(path) {
         Ok(_) => Ok(()),
-        Err(error) => refuse(error.to_string(), "choose another path"),
+        Err(error) => refuse(error.to_string(), "choose another path (--out)"),
     }
 }
 

@@ -132,7 +132,8 @@ impl Snapshot {
 
 fn read_about(bytes: &[u8]) -> Result<About, Invalid> {
     let bad = |found: String| Invalid::new("metadata", found, "", "it was written by another program or version");
-    let (_, header) = SafeTensors::read_metadata(bytes).map_err(|error| bad(error.to_string()))?;
+    let other = |error| Invalid::new("file", error, "", "name a run folder, or a file in its snapshots/");
+    let (_, header) = SafeTensors::read_metadata(bytes).map_err(other)?;
     let text = header.metadata().as_ref().and_then(|map| map.get(METADATA));
     let text = text.ok_or_else(|| bad(format!("no `{METADATA}` entry")))?;
     let metadata: Metadata = serde_json::from_str(text).map_err(|error| bad(error.to_string()))?;

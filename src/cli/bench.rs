@@ -28,7 +28,7 @@ const HELP: &str = "Figures are environment steps of 10 ms a second, with the de
   environment  observation, noise, motion, gates, reward, ends and resets; commands held, no policy
   rollout      the environment flown by the stochastic policy, stored for learning
   training     rollout, advantages and all epochs of the update
-The peak is that of single-precision multiply-adds, each counted as two operations; training's share of it counts the
+The peak is that of single-precision multiply-adds, each counted as two operations; training's share of it counts the \
 networks' multiply-adds and nothing else.";
 
 fn parse_seconds(text: &str) -> Result<f64, String> {

@@ -41,9 +41,9 @@ pub struct Args {
     threads: Option<usize>,
 }
 
-const HELP: &str = "The deterministic mean policy flies without observation or action noise, through the gates' full
-apertures, for at most 1000 steps. The paper deploys a policy where 95 % of fixed-start agents complete a lap:
-`racer eval latest --require 0.95`.";
+const HELP: &str = "The deterministic mean policy flies without observation or action noise through the gates' full \
+apertures, for at most 1000 steps unless configured otherwise. The paper deploys a policy where 95 % of fixed-start \
+agents complete a lap: `racer eval latest --require 0.95`.";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Start {

@@ -22,7 +22,7 @@ use std::time::SystemTime;
 
 /// Train a policy, evaluate every snapshot of it and keep the best
 #[derive(Debug, clap::Args)]
-#[command(after_help = HELP)]
+#[command(after_help = HELP, after_long_help = long_help())]
 pub struct Args {
     /// Configuration: a name or a file, looked for here, in configs/ and among the built-in ones
     #[arg(long, value_name = "NAME|FILE", default_value = DEFAULT)]
@@ -60,6 +60,11 @@ Examples:
   racer train
   racer train --track uzh_split_s --minutes 2 --set ppo.learning_rate=3e-4
   racer train --config runs/RUN/config.toml --seed 2";
+
+/// The help with all keys of the configuration.
+fn long_help() -> String {
+    format!("{HELP}\n\nThe built-in a2rl.toml:\n\n{}", include_str!("../../configs/a2rl.toml"))
+}
 
 impl Args {
     /// What the options change in the configuration, in the order of precedence.
