@@ -1,1 +1,96 @@
-//! Under construction.
+//! The command line: arguments in, text and exit code out. Nothing else prints.
+
+mod bench;
+mod eval;
+mod interrupt;
+mod pool;
+mod progress;
+mod table;
+mod train;
+
+use crate::check::BadInput;
+use clap::{Parser, Subcommand};
+use std::io::{self, ErrorKind, Write};
+use std::process::ExitCode;
+
+/// Train drone-racing policies in minutes on an ordinary CPU.
+#[derive(Debug, Parser)]
+#[command(name = "racer", version, max_term_width = 100, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Train(train::Args),
+    Eval(eval::Args),
+    Bench(bench::Args),
+}
+
+const EXIT_CODES: &str = "Results go to standard output, everything else to standard error.
+
+Exit codes:
+  0    done
+  1    something failed on the way, such as a full disk
+  2    bad input: nothing was started
+  4    `--require` was not met
+  130  stopped by Ctrl-C";
+
+/// How a command ended, where it did not fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    Done,
+    NotMet,
+    Interrupted,
+}
+
+impl Outcome {
+    fn code(self) -> u8 {
+        match self {
+            Outcome::Done => 0,
+            Outcome::NotMet => 4,
+            Outcome::Interrupted => 130,
+        }
+    }
+}
+
+/// Runs the command that this process was started with.
+pub fn main() -> ExitCode {
+    // Usage errors end here, with clap's own message and exit code 2.
+    let result = match Cli::parse().command {
+        Command::Train(args) => train::run(&args),
+        Command::Eval(args) => eval::run(&args),
+        Command::Bench(args) => bench::run(&args),
+    };
+    let code = result.map(Outcome::code).unwrap_or_else(|error| {
+        tell(&format!("error: {error:#}"));
+        if error.is::<BadInput>() { 2 } else { 1 }
+    });
+    ExitCode::from(code)
+}
+
+/// Prints a result. A reader that has gone away is no error: it has what it wanted.
+fn print(text: &str) -> io::Result<()> {
+    match writeln!(io::stdout(), "{text}") {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        other => other,
+    }
+}
+
+/// Prints a remark.
+fn tell(text: &str) {
+    // Where even that fails there is nobody left to tell.
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn arguments_are_declared_without_contradiction() {
+        Cli::command().debug_assert();
+    }
+}

@@ -44,36 +44,47 @@ impl Config {
     /// Finds `name` in the working directory, in `configs/` or among the built-in ones, applies `settings` in order, and
     /// checks the result. Keys that neither sets are those of the built-in `a2rl.toml`.
     pub fn load(name: &str, settings: &[Setting]) -> Result<Self, BadInput> {
-        Layers { base: LIBRARY.built_in(DEFAULT)?, file: LIBRARY.open(name)?, settings }.resolve()
-    }
-
-    /// The track it names.
-    pub fn load_track(&self) -> Result<Track, BadInput> {
-        Track::load(&self.track)
-    }
-
-    /// The vehicle it names.
-    pub fn load_vehicle(&self) -> Result<Vehicle, BadInput> {
-        Vehicle::load(&self.vehicle)
-    }
-
-    /// Checks what only the configuration, the track and the vehicle together can violate.
-    pub fn check_against(&self, track: &Track, vehicle: &Vehicle) -> Result<(), Invalid> {
-        let narrowest = track.gates.iter().filter(|gate| gate.kind == GateKind::Physical).map(|gate| gate.radius_m);
-        let narrowest = narrowest.fold(f64::INFINITY, f64::min);
-        let radius = self.env.gate_radius_m;
-        let expected = format!("at most {narrowest} m, the narrowest gate of {}", track.name);
-        Invalid::unless(radius <= narrowest, "env.gate_radius_m", radius, &expected, "train with less than is scored")?;
-        let [low, high] = self.env.randomize.voltage_v;
-        let battery = &vehicle.battery;
-        let expected = format!("within {} to {} V, the battery of {}", battery.empty_v, battery.full_v, vehicle.name);
-        let inside = battery.empty_v <= low && high <= battery.full_v;
-        Invalid::unless(inside, "env.randomize.voltage_v", format!("[{low}, {high}]"), &expected, "narrow the range")
+        Layers::open(name, settings)?.resolve()
     }
 
     /// The configuration as a complete TOML file, from which the run can be repeated.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("a checked configuration consists of tables, numbers and strings only")
+    }
+}
+
+/// A configuration with the track and the vehicle that it names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    pub config: Config,
+    pub track: Track,
+    pub vehicle: Vehicle,
+}
+
+impl Setup {
+    /// As [`Config::load`], with the files it names; checks that they fit together.
+    pub fn load(name: &str, settings: &[Setting]) -> Result<Self, BadInput> {
+        let layers = Layers::open(name, settings)?;
+        let config = layers.resolve()?;
+        let setup = Self { track: Track::load(&config.track)?, vehicle: Vehicle::load(&config.vehicle)?, config };
+        setup.check().map_err(|invalid| layers.blame(invalid))?;
+        Ok(setup)
+    }
+}
+
+/// What only the three together can violate; each is checked for itself when it is read.
+impl Check for Setup {
+    fn check(&self) -> Result<(), Invalid> {
+        let Self { config, track, vehicle } = self;
+        let physical = track.gates.iter().filter(|gate| gate.kind == GateKind::Physical);
+        let narrowest = physical.map(|gate| gate.radius_m).fold(f64::INFINITY, f64::min);
+        let radius = config.env.gate_radius_m;
+        let expected = format!("at most {narrowest} m, the narrowest gate of {}", track.name);
+        Invalid::unless(radius <= narrowest, "env.gate_radius_m", radius, &expected, "train with less than is scored")?;
+        let ([low, high], battery) = (config.env.randomize.voltage_v, &vehicle.battery);
+        let expected = format!("within {} to {} V, the battery of {}", battery.empty_v, battery.full_v, vehicle.name);
+        let inside = battery.empty_v <= low && high <= battery.full_v;
+        Invalid::unless(inside, "env.randomize.voltage_v", format!("[{low}, {high}]"), &expected, "narrow the range")
     }
 }
 

@@ -1,5 +1,6 @@
 //! Evaluation: the mean policy on a randomised batch of vehicles.
 
+pub mod choose;
 pub mod fly;
 pub mod score;
 

@@ -1,11 +1,13 @@
 //! skeleton
 pub mod bench;
 pub mod check;
+pub mod cli;
 pub mod config;
 pub mod document;
 pub mod dynamics;
 pub mod env;
 pub mod eval;
+pub mod fsio;
 pub mod lane;
 pub mod nn;
 pub mod peak;
@@ -13,7 +15,9 @@ pub mod policy;
 pub mod ppo;
 pub mod report;
 pub mod rng;
+pub mod run;
 pub mod sim;
+pub mod snapshot;
 pub mod stats;
 pub mod track;
 pub mod vehicle;

@@ -1,6 +1,6 @@
 //! Bad configurations are refused before any work, with file, line, key and what to do.
 
-use racer::config::{Config, Setting};
+use racer::config::{Config, Setting, Setup};
 use std::path::PathBuf;
 use tempfile::TempDir;
 
@@ -32,9 +32,7 @@ fn set(settings: &[&str]) -> Result<Config, racer::check::BadInput> {
 
 #[test]
 fn the_built_in_configuration_is_sound() {
-    let config = Config::load("a2rl.toml", &[]).unwrap();
-    let (track, vehicle) = (config.load_track().unwrap(), config.load_vehicle().unwrap());
-    assert_eq!(config.check_against(&track, &vehicle), Ok(()));
+    let config = Setup::load("a2rl.toml", &[]).unwrap().config;
     assert_eq!(Config::load("a2rl", &[]).unwrap(), config);
 }
 
@@ -112,8 +110,13 @@ fn files_that_are_not_there_or_not_toml() {
 }
 
 #[test]
-fn a_wider_aperture_than_the_tracks_is_refused() {
-    let config = set(&["env.gate_radius_m=0.8"]).unwrap();
-    let invalid = config.check_against(&config.load_track().unwrap(), &config.load_vehicle().unwrap()).unwrap_err();
-    assert_eq!(invalid.key, "env.gate_radius_m");
+fn what_does_not_fit_the_track_or_vehicle_is_refused() {
+    let refuses = |setting: &str, part: &str| {
+        let message = Setup::load("a2rl", &[Setting::parse(setting).unwrap()]).unwrap_err().to_string();
+        assert!(message.starts_with(&format!("--set {setting}")) && message.contains(part), "{message}");
+    };
+    refuses("env.gate_radius_m=0.8", "at most 0.75 m, the narrowest gate of a2rl_s2");
+    refuses("env.randomize.voltage_v=[21, 24]", "within 22 to 24 V, the battery of seed_class");
+    let message = Setup::load("a2rl", &[Setting::parse("track=monza").unwrap()]).unwrap_err().to_string();
+    assert!(message.contains("track `monza`") && message.contains("uzh_split_s"), "{message}");
 }

@@ -1,6 +1,6 @@
 //! A configuration in layers: built-in values, then the file's, then the command line's.
 
-use super::{Config, Setting};
+use super::{Config, DEFAULT, LIBRARY, Setting};
 use crate::check::{BadInput, Check, Invalid};
 use crate::document::{Document, decode, nearest};
 use toml::{Table, Value};
@@ -9,12 +9,17 @@ use toml::{Table, Value};
 const EXCLUSIVE: [&str; 2] = ["budget.minutes", "budget.steps"];
 
 pub struct Layers<'a> {
-    pub base: Document,
-    pub file: Document,
-    pub settings: &'a [Setting],
+    base: Document,
+    file: Document,
+    settings: &'a [Setting],
 }
 
-impl Layers<'_> {
+impl<'a> Layers<'a> {
+    /// The file found as `name`, between the built-in values and `settings`.
+    pub fn open(name: &str, settings: &'a [Setting]) -> Result<Self, BadInput> {
+        Ok(Self { base: LIBRARY.built_in(DEFAULT)?, file: LIBRARY.open(name)?, settings })
+    }
+
     /// Lays them over each other, decodes and checks.
     pub fn resolve(&self) -> Result<Config, BadInput> {
         let known = self.known_keys();
@@ -33,7 +38,7 @@ impl Layers<'_> {
     }
 
     /// Names the layer that the value came from.
-    fn blame(&self, invalid: Invalid) -> BadInput {
+    pub fn blame(&self, invalid: Invalid) -> BadInput {
         let inside = |outer: &str| invalid.key == outer || invalid.key.starts_with(&format!("{outer}."));
         if let Some(setting) = self.settings.iter().rev().find(|setting| inside(&setting.key)) {
             return BadInput::at(&setting.option, invalid);

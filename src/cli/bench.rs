@@ -1,0 +1,104 @@
+//! `racer bench`: how fast this machine is.
+
+use super::pool::threads;
+use super::{Outcome, tell};
+use crate::bench::{Figures, Pair, measure};
+use crate::config::{DEFAULT, Setup};
+use crate::lane::Level;
+use serde::Serialize;
+use std::time::Duration;
+
+/// Measure simulation and training on this machine, beside its own limit
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Args {
+    /// Print JSON in place of the table
+    #[arg(long)]
+    json: bool,
+    /// Threads of the second column [default: all processors]
+    #[arg(long, value_parser = super::pool::parse_threads)]
+    threads: Option<usize>,
+    /// Time to measure for, about, s
+    #[arg(long, allow_negative_numbers = true, default_value_t = 20.0, value_parser = parse_seconds)]
+    seconds: f64,
+}
+
+const HELP: &str = "Figures are environment steps of 10 ms a second, with the default configuration:
+  physics      the equations of motion alone, commands held
+  environment  observation, noise, motion, gates, reward, ends and resets; commands held, no policy
+  rollout      the environment flown by the stochastic policy, stored for learning
+  training     rollout, advantages and all epochs of the update
+The peak is that of single-precision multiply-adds, each counted as two operations; training's share of it counts the \
+networks' multiply-adds and nothing else.";
+
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.01..=600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("expected 0.01 to 600".into()),
+    }
+}
+
+/// What `--json` prints: names and shapes that scripts rely on.
+#[derive(Serialize)]
+struct Report<'a> {
+    physics_steps_per_s: Pair,
+    environment_steps_per_s: Pair,
+    rollout_steps_per_s: Pair,
+    training_steps_per_s: Pair,
+    /// All threads.
+    peak_flops_per_s: f64,
+    training_peak_share: f64,
+    peak_flops_per_s_one_thread: f64,
+    training_peak_share_one_thread: f64,
+    training_flops_per_step: f64,
+    threads: usize,
+    simd: &'a str,
+}
+
+/// Measures and prints.
+pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    let Setup { config, track, vehicle } = Setup::load(DEFAULT, &[])?;
+    tell(&format!("measuring, about {:.0} s", args.seconds));
+    let time = Duration::from_secs_f64(args.seconds);
+    let figures = measure(&config, &track, &vehicle, Level::best(), threads(args.threads), time);
+    let text = if args.json { serde_json::to_string_pretty(&report(&figures))? } else { table(&figures) };
+    super::print(&text)?;
+    Ok(Outcome::Done)
+}
+
+fn report(figures: &Figures) -> Report<'_> {
+    Report {
+        physics_steps_per_s: figures.physics_steps_per_s,
+        environment_steps_per_s: figures.environment_steps_per_s,
+        rollout_steps_per_s: figures.rollout_steps_per_s,
+        training_steps_per_s: figures.training_steps_per_s,
+        peak_flops_per_s: figures.peak_flops_per_s.all_threads,
+        training_peak_share: figures.training_peak_share,
+        peak_flops_per_s_one_thread: figures.peak_flops_per_s.one_thread,
+        training_peak_share_one_thread: figures.training_peak_share_one_thread,
+        training_flops_per_step: figures.training_flops_per_step,
+        threads: figures.threads,
+        simd: &figures.simd,
+    }
+}
+
+fn table(figures: &Figures) -> String {
+    let row = |name: &str, pair: Pair, unit: f64, unit_name: &str| {
+        let [one, all] = [pair.one_thread, pair.all_threads].map(|value| value / unit);
+        format!("{name:<14}{one:>12.2}{all:>14.2}   {unit_name}\n")
+    };
+    let threads = match figures.threads {
+        1 => "1 thread".into(),
+        threads => format!("{threads} threads"),
+    };
+    let share = Pair { one_thread: figures.training_peak_share_one_thread, all_threads: figures.training_peak_share };
+    let rows = [
+        row("physics", figures.physics_steps_per_s, 1e6, "M steps/s"),
+        row("environment", figures.environment_steps_per_s, 1e6, "M steps/s"),
+        row("rollout", figures.rollout_steps_per_s, 1e6, "M steps/s"),
+        row("training", figures.training_steps_per_s, 1e6, "M steps/s"),
+        row("peak", figures.peak_flops_per_s, 1e9, "GFLOP/s"),
+        row("  share", share, 0.01, "% of the peak reached by training"),
+    ];
+    format!("{:<14}{:>12}{threads:>14}   {}\n{}", "", "1 thread", figures.simd, rows.concat().trim_end())
+}

@@ -1,0 +1,136 @@
+//! `racer eval`: what a policy is worth.
+
+use super::pool::{pool, threads};
+use super::{Outcome, table, tell};
+use crate::check::BadInput;
+use crate::env::Race;
+use crate::env::reset::Place;
+use crate::eval::{Report, benchmark};
+use crate::fsio::Reserved;
+use crate::lane::Level;
+use crate::run::{self, Found};
+use crate::snapshot::Snapshot;
+use clap::ValueEnum;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Fly a policy with many randomised vehicles and score it
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Args {
+    /// A run folder (its best policy), a snapshot file, or `latest` for the youngest run below runs/
+    #[arg(value_name = "RUN|SNAPSHOT|latest")]
+    policy: String,
+    /// Where the agents start: on the pad, along the track, or one after the other
+    #[arg(long, value_enum, default_value_t = Start::Both)]
+    start: Start,
+    /// Vehicles: one nominal, all others with every factor drawn [default: as configured, 512]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    agents: Option<u32>,
+    /// Exit with code 4 where a smaller share than this of the fixed-start agents completes a lap
+    #[arg(long, value_name = "SHARE", value_parser = parse_share)]
+    require: Option<f64>,
+    /// Print JSON in place of the table
+    #[arg(long)]
+    json: bool,
+    /// New file for the JSON [default: evaluation-START-AGENTS.json beside the policy]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Threads [default: all processors]; changes the speed, not the result
+    #[arg(long, value_parser = super::pool::parse_threads)]
+    threads: Option<usize>,
+}
+
+const HELP: &str = "The deterministic mean policy flies without observation or action noise through the gates' full \
+apertures, for at most 1000 steps unless configured otherwise. The paper deploys a policy where 95 % of fixed-start \
+agents complete a lap: `racer eval latest --require 0.95`.";
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Start {
+    Fixed,
+    Random,
+    Both,
+}
+
+fn parse_share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
+        _ => Err("expected a share, 0 to 1".into()),
+    }
+}
+
+/// What is written and, with `--json`, printed.
+#[derive(Serialize)]
+struct File<'a> {
+    snapshot: String,
+    track: &'a str,
+    vehicle: &'a str,
+    /// Steps it was trained for.
+    steps: u64,
+    seed: u64,
+    max_steps: usize,
+    #[serde(flatten)]
+    report: &'a Report,
+}
+
+/// Evaluates, prints and writes.
+pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    if args.require.is_some() && args.start == Start::Random {
+        let advice = "leave --start out, or --require";
+        return Err(BadInput::new("--require", "--start random", "fixed starts, which it is about", advice).into());
+    }
+    let found = run::find(&args.policy)?;
+    let Snapshot { network, about } = Snapshot::read(&found.snapshot)?;
+    let mut config = about.eval.clone();
+    config.agents = args.agents.map_or(config.agents, |agents| agents as usize);
+    let file = Reserved::new(&args.out.clone().unwrap_or_else(|| default_file(&found, args.start, config.agents)))?;
+
+    let race = Race::new(&about.env, &about.track, &about.vehicle, about.seed);
+    let fly = |place| benchmark(Level::best(), &race, &about.track, &network, place, &config).0;
+    let report = pool(threads(args.threads))?.install(|| Report {
+        fixed: (args.start != Start::Random).then(|| fly(Place::Pad)),
+        random: (args.start != Start::Fixed).then(|| fly(Place::Spline)),
+    });
+    let content = File {
+        snapshot: found.snapshot.display().to_string(),
+        track: &about.track.name,
+        vehicle: &about.vehicle.name,
+        steps: about.steps,
+        seed: about.seed,
+        max_steps: config.max_steps,
+        report: &report,
+    };
+    let json = serde_json::to_string_pretty(&content)?;
+    let written = file.write(format!("{json}\n").as_bytes())?;
+    if args.json {
+        super::print(&json)?;
+    } else {
+        let title = format!("{} on {} after {:.1} M steps", content.snapshot, content.track, about.steps as f64 / 1e6);
+        super::print(&format!("{title}\n\n{}", table::report(&report)))?;
+    }
+    tell(&format!("written to {}", written.display()));
+    Ok(judge(args.require, &report))
+}
+
+fn judge(require: Option<f64>, report: &Report) -> Outcome {
+    let (completion, Some(share)) = (report.completion(), require) else { return Outcome::Done };
+    if completion >= share {
+        return Outcome::Done;
+    }
+    tell(&format!("{:.1} % of fixed starts completed a lap; {:.1} % are required", 100.0 * completion, 100.0 * share));
+    Outcome::NotMet
+}
+
+/// A name that says what was measured, and that is still free.
+fn default_file(found: &Found, start: Start, agents: usize) -> PathBuf {
+    let start = format!("{start:?}").to_lowercase();
+    let name = match &found.run {
+        Some(_) => format!("evaluation-{start}-{agents}.json"),
+        None => {
+            let policy = found.snapshot.file_stem().unwrap_or_default().to_string_lossy();
+            format!("{policy}-evaluation-{start}-{agents}.json")
+        }
+    };
+    let beside = found.run.as_deref().or(found.snapshot.parent()).unwrap_or(Path::new(""));
+    run::free(&beside.join(name))
+}

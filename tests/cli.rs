@@ -1,0 +1,252 @@
+//! The commands as a user meets them: exit codes, what is printed where, what is left on disk.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// A training of a second.
+const TINY: [&str; 18] = [
+    "train",
+    "--track=square",
+    "--steps=8000",
+    "--set=ppo.environments=64",
+    "--set=ppo.rollout=16",
+    "--set=ppo.minibatches=2",
+    "--set",
+    "ppo.epochs=2",
+    "--set",
+    "eval.agents=20",
+    "--set",
+    "eval.max_steps=150",
+    "--set",
+    "budget.snapshots=3",
+    "--seed",
+    "5",
+    "--out",
+    "run",
+];
+
+struct Ran {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+fn racer(folder: &Path, args: &[&str]) -> Ran {
+    let output = Command::cargo_bin("racer").unwrap().current_dir(folder).args(args).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    Ran { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
+}
+
+fn trained() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let ran = racer(folder.path(), &TINY);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    folder
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+/// The keys that the results of one start distribution have.
+const KEYS: [&str; 9] = [
+    "agents",
+    "lap_completion",
+    "lap_time_s",
+    "gates_passed",
+    "top_speed_m_s",
+    "saturated_share",
+    "mean_action_change_sq",
+    "failures_by_gate",
+    "sections",
+];
+
+#[test]
+fn a_run_leaves_everything_behind() {
+    let folder = trained();
+    let run = folder.path().join("run");
+    for file in ["command.txt", "config.toml", "track.toml", "vehicle.toml", "provenance.json", "metrics.csv"] {
+        assert!(run.join(file).is_file(), "{file}");
+    }
+    let count = |name: &str| std::fs::read_dir(run.join(name)).unwrap().count();
+    assert_eq!((count("snapshots"), count("tensorboard")), (3, 1));
+    let command = std::fs::read_to_string(run.join("command.txt")).unwrap();
+    assert!(command.contains("--set=ppo.environments=64 ") && command.ends_with("--out run\n"), "{command}");
+    // 8000 steps are eight rollouts of 1024.
+    let metrics = std::fs::read_to_string(run.join("metrics.csv")).unwrap();
+    assert_eq!(metrics.lines().count(), 9);
+    assert!(metrics.starts_with("steps,time/seconds,") && metrics.lines().last().unwrap().starts_with("8192,"));
+    let evaluation = json(&run.join("evaluation.json"));
+    for start in ["fixed", "random"] {
+        assert!(KEYS.iter().all(|key| evaluation[start].get(key).is_some()), "{evaluation}");
+        assert_eq!(evaluation[start]["agents"], 20);
+    }
+    assert_eq!(json(&run.join("snapshots.json")).as_array().unwrap().len(), 3);
+    assert_eq!(json(&run.join("provenance.json"))["racer"], env!("CARGO_PKG_VERSION"));
+}
+
+#[test]
+fn a_run_repeats_bit_for_bit_on_any_number_of_threads() {
+    let (first, second) = (trained(), tempfile::tempdir().unwrap());
+    let config = first.path().join("run/config.toml");
+    let args = ["train", "--config", config.to_str().unwrap(), "--threads", "1", "--out", "run"];
+    assert_eq!(racer(second.path(), &args).code, 0);
+    let snapshots = |folder: &Path| {
+        let entries = std::fs::read_dir(folder.join("run/snapshots")).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(snapshots(first.path()), snapshots(second.path()));
+    for name in snapshots(first.path()) {
+        let weights = |folder: &Path| {
+            let bytes = std::fs::read(folder.join("run/snapshots").join(&name)).unwrap();
+            // The header tells the training time, which differs.
+            let header = u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize;
+            bytes[8 + header..].to_vec()
+        };
+        assert!(weights(first.path()) == weights(second.path()), "{name:?}");
+    }
+}
+
+#[test]
+fn eval_prints_writes_and_judges() {
+    let folder = trained();
+    let ran = racer(folder.path(), &["eval", "run", "--start", "fixed", "--agents", "17", "--json"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let printed: Value = serde_json::from_str(&ran.out).unwrap();
+    assert_eq!(printed["fixed"]["agents"], 17);
+    assert!(printed.get("random").is_none());
+    assert_eq!(json(&folder.path().join("run/evaluation-fixed-17.json")), printed);
+
+    let again = racer(folder.path(), &["eval", "run/policy.safetensors", "--out", "e.json", "--threads", "1"]);
+    assert_eq!(again.code, 0, "{}", again.err);
+    assert!(again.out.contains("lap completion") && again.out.contains("random start"), "{}", again.out);
+    // The training's own evaluation said the same.
+    assert_eq!(json(&folder.path().join("e.json"))["fixed"], json(&folder.path().join("run/evaluation.json"))["fixed"]);
+
+    let unmet = racer(folder.path(), &["eval", "run", "--require", "0.95"]);
+    assert_eq!(unmet.code, 4, "{}", unmet.err);
+    assert!(unmet.err.contains("95.0 % are required"));
+    assert_eq!(racer(folder.path(), &["eval", "run", "--require", "0", "--agents", "1"]).code, 0);
+}
+
+#[test]
+fn latest_is_the_youngest_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let none = racer(folder.path(), &["eval", "latest"]);
+    assert!(none.code == 2 && none.err.contains("train first"), "{}", none.err);
+    let ran = racer(folder.path(), &TINY[..16]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let run = std::fs::read_dir(folder.path().join("runs")).unwrap().next().unwrap().unwrap().path();
+    assert!(run.to_str().unwrap().ends_with("Z-square"), "{}", run.display());
+    assert_eq!(racer(folder.path(), &["eval", "latest", "--agents", "3"]).code, 0);
+    assert!(run.join("evaluation-both-3.json").is_file());
+}
+
+#[test]
+fn bad_input_is_refused_before_any_work() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("bad.toml"), "[ppo]\nlerning_rate = 1\n").unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    std::fs::create_dir(folder.path().join("full")).unwrap();
+    std::fs::write(folder.path().join("full/precious"), "x").unwrap();
+    for (args, parts) in [
+        (&["train", "--config", "bad.toml"][..], &["bad.toml:2", "ppo.lerning_rate", "`ppo.learning_rate`"][..]),
+        (&["train", "--set", "ppo.clip=wide"], &["--set ppo.clip=wide", "a number"]),
+        (&["train", "--set", "ppo.gamma=1.5"], &["ppo.gamma", "0 to 1"]),
+        (&["train", "--set", "ppo.minibatches=7"], &["ppo.minibatches", "4 and 8"]),
+        (&["train", "--track", "monza"], &["track `monza`"]),
+        (&["train", "--minutes", "-1"], &["--minutes -1", "budget.minutes", "above 0"]),
+        (&["train", "--minutes", "1", "--steps", "5"], &["--minutes", "--steps"]),
+        (&["train", "--threads", "0"], &["--threads", "1 to 1024"]),
+        (&["train", "--out", "full"], &["full", "nothing existing is overwritten"]),
+        (&["train", "--out", "file"], &["file", "choose another path"]),
+        (&["train", "--out", "file/run"], &["file/run", "choose another path"]),
+        (&["eval", "nowhere"], &["nowhere", "a run folder"]),
+        (&["eval", "bad.toml"], &["bad.toml", "a policy snapshot"]),
+        (&["eval", "full"], &["full", "policy.safetensors"]),
+        (&["eval", "nowhere", "--start", "random", "--require", "0.9"], &["--require", "fixed starts"]),
+        (&["bench", "--seconds", "-1"], &["--seconds"]),
+        (&["fly"], &["fly"]),
+    ] {
+        let ran = racer(folder.path(), args);
+        assert_eq!(ran.code, 2, "{args:?}: {}", ran.err);
+        assert!(ran.out.is_empty(), "{args:?}: {}", ran.out);
+        for part in parts {
+            assert!(ran.err.contains(part), "{args:?}: `{part}` is not in:\n{}", ran.err);
+        }
+    }
+    assert!(!folder.path().join("runs").exists());
+    assert_eq!(std::fs::read(folder.path().join("full/precious")).unwrap(), b"x");
+}
+
+#[test]
+fn outputs_that_cannot_be_written_fail_before_the_work() {
+    let folder = trained();
+    std::fs::write(folder.path().join("e.json"), "precious").unwrap();
+    for out in ["e.json", "none/e.json"] {
+        let ran = racer(folder.path(), &["eval", "run", "--out", out]);
+        assert!(ran.code == 2 && ran.out.is_empty() && ran.err.contains(out), "{}", ran.err);
+    }
+    assert_eq!(std::fs::read(folder.path().join("e.json")).unwrap(), b"precious");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_finishes_the_update_and_saves() {
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+    let folder = tempfile::tempdir().unwrap();
+    let mut args = TINY.to_vec();
+    args[2] = "--minutes=10";
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("racer"))
+        .current_dir(folder.path())
+        .args(args)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut err = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("steps/s") {
+        line.clear();
+        assert!(err.read_line(&mut line).unwrap() > 0, "the training ended by itself");
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let rest: Vec<String> = err.lines().map(Result::unwrap).collect();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(rest.iter().any(|line| line.contains("racer eval run")), "{rest:?}");
+    assert_eq!(racer(folder.path(), &["eval", "run", "--agents", "2"]).code, 0);
+    assert!(folder.path().join("run/metrics.csv").is_file());
+}
+
+#[test]
+fn bench_has_the_keys_that_it_promises() {
+    let folder = tempfile::tempdir().unwrap();
+    let ran = racer(folder.path(), &["bench", "--json", "--seconds", "0.01", "--threads", "2"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let figures: Value = serde_json::from_str(&ran.out).unwrap();
+    for key in ["physics_steps_per_s", "rollout_steps_per_s", "training_steps_per_s"] {
+        for threads in ["one_thread", "all_threads"] {
+            assert!(figures[key][threads].as_f64().unwrap() > 0.0, "{key}.{threads}");
+        }
+    }
+    assert!(figures["peak_flops_per_s"].as_f64().unwrap() > 0.0);
+    assert!((0.0..=1.0).contains(&figures["training_peak_share"].as_f64().unwrap()));
+    assert_eq!(figures["threads"], 2);
+    assert!(figures["simd"].is_string());
+}
+
+#[test]
+fn help_names_the_exit_codes() {
+    let folder = tempfile::tempdir().unwrap();
+    let ran = racer(folder.path(), &["--help"]);
+    assert!(ran.code == 0 && ran.out.contains("130") && ran.out.contains("--require"));
+    let ran = racer(folder.path(), &["train", "--help"]);
+    assert!(ran.out.contains("adam_epsilon") && ran.out.contains("budget"), "all keys are listed: {}", ran.out);
+    for command in ["train", "eval", "bench"] {
+        assert_eq!(racer(folder.path(), &[command, "--help"]).code, 0);
+    }
+}
