@@ -9,7 +9,10 @@
 //! | `snapshots/` | policies on the way, named by environment steps |
 //! | `snapshots.json` | how each did in evaluation |
 //! | `policy.safetensors`, `evaluation.json` | the best of them, and how it did |
+//! | `lap.csv`, `lap.svg` | a flight of the nominal vehicle with it: step by step, and from above |
+//! | `training.svg` | learning curves |
 
+pub mod figures;
 mod find;
 pub mod metrics;
 pub mod provenance;

@@ -39,7 +39,10 @@ impl Kernel for Errors {
 fn functions_are_as_accurate_as_stated() {
     for level in Level::available() {
         let [exp, ln, tanh, sin_cos] = dispatch(level, Errors);
-        assert!(exp < 3e-7 && ln < 4e-7 && tanh < 2e-6 && sin_cos < 5e-7, "{level}: {exp:e} {ln:e} {tanh:e} {sin_cos:e}");
+        assert!(
+            exp < 3e-7 && ln < 4e-7 && tanh < 2e-6 && sin_cos < 5e-7,
+            "{level}: {exp:e} {ln:e} {tanh:e} {sin_cos:e}"
+        );
     }
 }
 

@@ -33,13 +33,8 @@ fn bits(trained: &Trained) -> Vec<u32> {
     trained.snapshots.last().unwrap().network.parameters.iter().map(|p| p.to_bits()).collect()
 }
 
-const SMALL: [&str; 5] = [
-    "budget.steps=40000",
-    "budget.snapshots=2",
-    "ppo.environments=256",
-    "ppo.rollout=16",
-    "ppo.minibatches=4",
-];
+const SMALL: [&str; 5] =
+    ["budget.steps=40000", "budget.snapshots=2", "ppo.environments=256", "ppo.rollout=16", "ppo.minibatches=4"];
 
 /// One thread and five give the same policy to the last bit; another seed gives another.
 #[test]

@@ -12,6 +12,7 @@ use crate::eval::choose::best;
 use crate::eval::{Report, benchmark};
 use crate::lane::Level;
 use crate::ppo::train::{Flow, Iteration, Observer, Trained, train};
+use crate::run::figures::{self, LAP, TRAINING};
 use crate::run::metrics::{Row, to_csv};
 use crate::run::provenance::Provenance;
 use crate::run::{POLICY, Run, SNAPSHOTS, TENSORBOARD, tensorboard};
@@ -99,7 +100,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         if trained.stopped {
             return stopped(&run, &trained);
         }
-        evaluate(&run, &setup, level, &race, &trained, &policies)
+        evaluate(&run, &setup, level, &race, &trained, &policies, &log.rows)
     })
 }
 
@@ -201,15 +202,18 @@ fn evaluate(
     race: &Race,
     trained: &Trained,
     policies: &[(String, Snapshot)],
+    rows: &[Row],
 ) -> anyhow::Result<Outcome> {
     tell(&format!("evaluating {} snapshots", policies.len()));
-    let mut reports = Vec::new();
+    let (mut reports, mut traces) = (Vec::new(), Vec::new());
     for (_, policy) in policies {
         if interrupt::asked() {
             return stopped(run, trained);
         }
-        let fly = |place| benchmark(level, race, &setup.track, &policy.network, place, &setup.config.eval).0;
-        reports.push(Report { fixed: Some(fly(Place::Pad)), random: Some(fly(Place::Spline)) });
+        let fly = |place| benchmark(level, race, &setup.track, &policy.network, place, &setup.config.eval);
+        let (fixed, flights) = fly(Place::Pad);
+        reports.push(Report { fixed: Some(fixed), random: Some(fly(Place::Spline).0) });
+        traces.push(flights.trace);
     }
     let entries = policies.iter().zip(&reports).map(|((name, policy), report)| {
         let &About { steps, seconds, .. } = &policy.about;
@@ -221,11 +225,16 @@ fn evaluate(
     run.write(POLICY, policies[chosen].1.to_bytes()?)?;
     run.write("evaluation.json", serde_json::to_string_pretty(&entries[chosen])? + "\n")?;
 
+    figures::write_lap(run, &setup.track, &traces[chosen], &reports[chosen])?;
+    let seconds: Vec<f64> = policies.iter().map(|(_, policy)| policy.about.seconds).collect();
+    let title = format!("{}, seed {}", setup.track.name, setup.config.seed);
+    figures::write_training(run, &title, rows, &seconds, &reports, chosen)?;
+
     let folder = run.folder.display();
     let (million, seconds) = (trained.steps as f64 / 1e6, trained.seconds);
     super::print(&format!(
         "trained {million:.1} M steps in {} at {:.2} M steps/s; best of {} snapshots after {:.1} M steps\n\n{}\n\n\
-         policy    {folder}/{POLICY}\nevaluate  racer eval {folder}",
+         policy    {folder}/{POLICY}\nfigures   {folder}/{LAP}, {folder}/{TRAINING}\nevaluate  racer eval {folder}",
         clock(seconds),
         million / seconds.max(1e-9),
         policies.len(),

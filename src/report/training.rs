@@ -60,7 +60,8 @@ fn draw_completion(area: &DrawingArea<SVGBackend, Shift>, snapshots: &[Evaluated
         .draw()
         .map_err(drawing)?;
     type Of = fn(&Evaluated) -> f64;
-    let lines: [(&str, RGBColor, Of); 2] = [("fixed start", BLUE_, |s| s.fixed), ("random start", ORANGE, |s| s.random)];
+    let lines: [(&str, RGBColor, Of); 2] =
+        [("fixed start", BLUE_, |s| s.fixed), ("random start", ORANGE, |s| s.random)];
     for (name, colour, of) in lines {
         let points = || snapshots.iter().map(|s| (s.minutes, 100.0 * of(s)));
         chart
