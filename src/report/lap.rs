@@ -88,7 +88,9 @@ fn draw_map(
         // Gates one above the other get their names side by side.
         let above = track.gates[..i].iter().filter(|g| (g.position() - p).xy().norm() < 0.5).count();
         let font = ("sans-serif", 18).into_font().color(&BLACK);
-        let label = Text::new(track.gate_label(i), along(-0.4, half + 0.7 + 1.1 * above as f64), font);
+        // Virtual gates often stand beside physical ones: their names go to the other side.
+        let side = if gate.kind == GateKind::Physical { 1.0 } else { -1.0 };
+        let label = Text::new(track.gate_label(i), along(-0.4, side * (half + 0.7 + 1.1 * above as f64)), font);
         chart.draw_series([label]).map_err(drawing)?;
     }
     let start = (track.start.position_m[0], track.start.position_m[1]);
