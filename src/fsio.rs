@@ -21,9 +21,12 @@ impl Reserved {
         }
         match temporary(folder_of(path)) {
             Ok(file) => Ok(Self { file, path: path.into() }),
-            Err(error) => {
-                Err(BadInput::new(path.display(), error, "a folder that can be written to", "choose another path (--out)"))
-            }
+            Err(error) => Err(BadInput::new(
+                path.display(),
+                error,
+                "a folder that can be written to",
+                "choose another path (--out)",
+            )),
         }
     }
 
@@ -55,7 +58,10 @@ pub fn new_folder(path: &Path) -> Result<(), BadInput> {
     match std::fs::read_dir(path).map(|mut entries| entries.next().is_some()) {
         Ok(false) => {}
         Ok(true) => {
-            return refuse("a folder with files in it".into(), "choose another path (--out); nothing existing is overwritten");
+            return refuse(
+                "a folder with files in it".into(),
+                "choose another path (--out); nothing existing is overwritten",
+            );
         }
         Err(error) => return refuse(error.to_string(), "choose another path (--out)"),
     }
