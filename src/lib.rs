@@ -13,6 +13,7 @@ pub mod nn;
 pub mod peak;
 pub mod policy;
 pub mod ppo;
+pub mod report;
 pub mod rng;
 pub mod run;
 pub mod sim;
