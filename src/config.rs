@@ -47,6 +47,16 @@ impl Config {
         Layers::open(name, settings)?.resolve()
     }
 
+    /// The track it names.
+    pub fn load_track(&self) -> Result<Track, BadInput> {
+        Track::load(&self.track)
+    }
+
+    /// The vehicle it names.
+    pub fn load_vehicle(&self) -> Result<Vehicle, BadInput> {
+        Vehicle::load(&self.vehicle)
+    }
+
     /// The configuration as a complete TOML file, from which the run can be repeated.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("a checked configuration consists of tables, numbers and strings only")
@@ -66,7 +76,7 @@ impl Setup {
     pub fn load(name: &str, settings: &[Setting]) -> Result<Self, BadInput> {
         let layers = Layers::open(name, settings)?;
         let config = layers.resolve()?;
-        let setup = Self { track: Track::load(&config.track)?, vehicle: Vehicle::load(&config.vehicle)?, config };
+        let setup = Self { track: config.load_track()?, vehicle: config.load_vehicle()?, config };
         setup.check().map_err(|invalid| layers.blame(invalid))?;
         Ok(setup)
     }

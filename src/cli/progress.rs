@@ -28,7 +28,7 @@ pub struct Progress {
 impl Progress {
     pub fn new() -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
-            let style = ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}");
+            let style = ProgressStyle::with_template("{bar:24} {percent:>3} %  {wide_msg}");
             ProgressBar::new(TICKS as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
         Self { bar, next_line_s: 0.0 }
