@@ -14,12 +14,26 @@ mod portable;
 mod x86;
 
 use std::fmt;
+use std::mem::MaybeUninit;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 pub use portable::Portable;
 
 /// Lanes in a block, on every CPU, so that results do not depend on the vector length.
 pub const LANES: usize = 16;
+
+/// `[f(0), f(1), ..]`, as [`std::array::from_fn`], but inlined: a closure over blocks that is called as a function of its own
+/// passes them through memory and does not know which instructions it may use.
+#[inline(always)]
+pub fn build<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
+    let mut all = [const { MaybeUninit::uninit() }; N];
+    // One call only: the compiler inlines a closure that is called in one place, whatever its size.
+    for (i, one) in all.iter_mut().enumerate() {
+        one.write(f(i));
+    }
+    // SAFETY: the loop has written every element.
+    unsafe { (&raw const all).cast::<[T; N]>().read() }
+}
 
 /// A truth value per lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
@@ -70,6 +84,8 @@ pub trait Real:
     fn ln(self) -> Self;
     /// Hyperbolic tangent; relative error below 2e-6 in single precision, never outside [-1, 1].
     fn tanh(self) -> Self;
+    /// Two hyperbolic tangents for less than twice the price of one, with the same bounds.
+    fn tanh_pair(pair: [Self; 2]) -> [Self; 2];
     /// `(sin(2 pi x), cos(2 pi x))` of `x` in turns; absolute error below 2e-7 in single precision.
     fn sin_cos_turns(self) -> (Self, Self);
 
@@ -125,6 +141,19 @@ pub trait Lane: Real {
     unsafe fn store(self, p: *mut Self::Elem);
     /// Transposes a 16 x 16 block: lane `i` of row `j` becomes lane `j` of row `i`.
     fn transpose(rows: &mut [Self; LANES]);
+    /// Lane `i` of the answer is `rows[i].sum()`.
+    #[inline(always)]
+    fn row_sums(mut rows: [Self; LANES]) -> Self {
+        Self::transpose(&mut rows);
+        let mut half = LANES / 2;
+        while half > 0 {
+            for i in 0..half {
+                rows[i] = rows[i] + rows[i + half];
+            }
+            half /= 2;
+        }
+        rows[0]
+    }
     /// Runs `f` compiled for this block's instructions, as a function of its own.
     fn vectorize<T>(f: impl FnOnce() -> T) -> T;
 
@@ -174,12 +203,12 @@ pub trait Lane: Real {
 /// The register tile of the matrix micro-kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tile {
-    /// 6 rows x 4 blocks: 24 accumulators of 32 wide registers.
+    /// 6 rows x 4 blocks: 24 accumulators of 32 registers that hold a block each.
     Rows6Blocks4,
-    /// 6 rows x 1 block, for 16 registers of half a block.
-    Rows6Blocks1,
-    /// 2 rows x 1 block, for 16 registers of a quarter of a block.
-    Rows2Blocks1,
+    /// 3 rows x 2 blocks: 12 accumulators of 16 registers that hold half a block each.
+    Rows3Blocks2,
+    /// 1 row x 2 blocks: 8 accumulators of 16 registers that hold a quarter of a block each.
+    Rows1Blocks2,
 }
 
 /// A block of `f32`: what the simulator and the network run on.
@@ -222,6 +251,19 @@ impl Word for u32 {
     fn shift_right<const N: u32>(self) -> Self {
         self >> N
     }
+}
+
+/// Asks for the cache line at `p` before it is needed. Any address will do.
+#[inline(always)]
+pub fn prefetch<T>(p: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: every x86-64 has the instruction, and it never faults.
+    unsafe {
+        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
+        _mm_prefetch::<_MM_HINT_T1>(p.cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = p;
 }
 
 /// Work to be run on the best blocks this CPU has.
@@ -298,7 +340,7 @@ pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
 }
 
 macro_rules! scalar {
-    ($t:ty, $fuses:literal, $exp:expr, $ln:expr, $tanh:expr, $sin_cos:expr) => {
+    ($t:ty, $fuses:literal, $exp:expr, $ln:expr, $tanh:expr, $tanh_pair:expr, $sin_cos:expr) => {
         impl Real for $t {
             type Mask = bool;
             const FUSES: bool = $fuses;
@@ -351,14 +393,19 @@ macro_rules! scalar {
                 $tanh(self)
             }
             #[inline(always)]
+            fn tanh_pair(pair: [Self; 2]) -> [Self; 2] {
+                $tanh_pair(pair)
+            }
+            #[inline(always)]
             fn sin_cos_turns(self) -> (Self, Self) {
                 $sin_cos(self)
             }
         }
     };
 }
-scalar!(f32, true, math::exp, math::ln, math::tanh, math::sin_cos_turns);
-scalar!(f64, true, f64::exp, f64::ln, f64::tanh, |x: f64| (x * std::f64::consts::TAU).sin_cos());
+scalar!(f32, true, math::exp, math::ln, math::tanh, math::tanh_pair, math::sin_cos_turns);
+scalar!(f64, true, f64::exp, f64::ln, f64::tanh, |x: [f64; 2]| x.map(f64::tanh), |x: f64| (x * std::f64::consts::TAU)
+    .sin_cos());
 
 impl Single for f32 {
     #[inline(always)]

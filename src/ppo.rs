@@ -2,6 +2,7 @@
 //!
 //! Knows nothing of racing: it sees an [`Environment`], and reports to an [`train::Observer`].
 
+mod chunk;
 pub mod config;
 pub mod gae;
 pub mod loss;

@@ -58,11 +58,26 @@ pub fn ln<R: Single>(x: R) -> R {
 /// Rational approximation of degree 7 over 6; saturates at |x| = 7, where 1 - tanh(x) is 1.7e-6.
 #[inline(always)]
 pub fn tanh<R: Single>(x: R) -> R {
+    let (p, q) = tanh_fraction(x);
+    p / q
+}
+
+/// Two hyperbolic tangents by one division, the dearest instruction here: a/b = a d / (b d).
+#[inline(always)]
+pub fn tanh_pair<R: Single>([x, y]: [R; 2]) -> [R; 2] {
+    let ((a, b), (c, d)) = (tanh_fraction(x), tanh_fraction(y));
+    let inverse = R::one() / (b * d);
+    [a * d * inverse, c * b * inverse]
+}
+
+/// Numerator and denominator of [`tanh`].
+#[inline(always)]
+fn tanh_fraction<R: Single>(x: R) -> (R, R) {
     let x = x.clamp(R::of(-7.0), R::of(7.0));
     let y = x * x;
     let p = [0.999_998_966_828_175_4, 0.123_220_517_444_534_36, 0.002_293_086_120_959_956, 3.995_859_013_041_447e-6];
     let q = [1.0, 0.456_546_115_714_809, 0.021_151_601_239_747_488, 0.000_143_984_169_425_929_43];
-    (x * horner(y, p)).divide_fast(horner(y, q))
+    (x * horner(y, p), horner(y, q))
 }
 
 /// Sine and cosine of `x` turns: reduced to an eighth of a turn, then swapped and signed by quadrant.

@@ -123,6 +123,11 @@ impl<E: Real<Mask = bool>> Real for Portable<E> {
         Portable(self.0.map(E::tanh))
     }
     #[inline(always)]
+    fn tanh_pair([a, b]: [Self; 2]) -> [Self; 2] {
+        let both: [[E; 2]; LANES] = from_fn(|i| E::tanh_pair([a.0[i], b.0[i]]));
+        [Portable(both.map(|x| x[0])), Portable(both.map(|x| x[1]))]
+    }
+    #[inline(always)]
     fn sin_cos_turns(self) -> (Self, Self) {
         let both = self.0.map(E::sin_cos_turns);
         (Portable(both.map(|x| x.0)), Portable(both.map(|x| x.1)))
@@ -133,7 +138,7 @@ macro_rules! lane {
     ($e:ty) => {
         impl Lane for Portable<$e> {
             type Elem = $e;
-            const TILE: Tile = Tile::Rows2Blocks1;
+            const TILE: Tile = Tile::Rows1Blocks2;
 
             #[inline(always)]
             fn splat(x: $e) -> Self {

@@ -181,6 +181,10 @@ macro_rules! real {
                 math::tanh(self)
             }
             #[inline(always)]
+            fn tanh_pair(pair: [Self; 2]) -> [Self; 2] {
+                math::tanh_pair(pair)
+            }
+            #[inline(always)]
             fn sin_cos_turns(self) -> (Self, Self) {
                 math::sin_cos_turns(self)
             }
@@ -302,6 +306,20 @@ fn transpose_avx512(r: &mut [Avx512; LANES]) {
     }
 }
 
+/// Halves of two rows are added at a time, in the order of [`Lane::sum`]: 30 shuffles where a transpose takes 64.
+#[inline(always)]
+fn row_sums_avx512(r: [Avx512; LANES]) -> Avx512 {
+    // SAFETY: see the module's page.
+    unsafe {
+        let halves = |a, b| _mm512_add_ps(_mm512_shuffle_f32x4::<0x44>(a, b), _mm512_shuffle_f32x4::<0xee>(a, b));
+        let quarters = |a, b| _mm512_add_ps(_mm512_shuffle_f32x4::<0x88>(a, b), _mm512_shuffle_f32x4::<0xdd>(a, b));
+        let pairs = |a, b| _mm512_add_ps(_mm512_shuffle_ps::<0x44>(a, b), _mm512_shuffle_ps::<0xee>(a, b));
+        let singles = |a, b| _mm512_add_ps(_mm512_shuffle_ps::<0x88>(a, b), _mm512_shuffle_ps::<0xdd>(a, b));
+        let four = |q: usize| quarters(halves(r[q].0, r[4 + q].0), halves(r[8 + q].0, r[12 + q].0));
+        Avx512(singles(pairs(four(0), four(1)), pairs(four(2), four(3))))
+    }
+}
+
 /// An 8 x 8 transpose within registers of 256 bits.
 #[inline(always)]
 fn transpose_8x8(r: [__m256; 8]) -> [__m256; 8] {
@@ -333,8 +351,25 @@ fn transpose_avx2(r: &mut [Avx2; LANES]) {
     }
 }
 
+/// As on AVX-512: a half of each row, then quarters, pairs and single numbers.
+#[inline(always)]
+fn row_sums_avx2(r: [Avx2; LANES]) -> Avx2 {
+    // SAFETY: see the module's page.
+    unsafe {
+        let quarters = |a, b| _mm256_add_ps(_mm256_permute2f128_ps::<0x20>(a, b), _mm256_permute2f128_ps::<0x31>(a, b));
+        let pairs = |a, b| _mm256_add_ps(_mm256_shuffle_ps::<0x44>(a, b), _mm256_shuffle_ps::<0xee>(a, b));
+        let singles = |a, b| _mm256_add_ps(_mm256_shuffle_ps::<0x88>(a, b), _mm256_shuffle_ps::<0xdd>(a, b));
+        let half = |row: usize| _mm256_add_ps(r[row].0[0], r[row].0[1]);
+        let eight = |row: usize| {
+            let two = |q: usize| quarters(half(row + q), half(row + 4 + q));
+            singles(pairs(two(0), two(1)), pairs(two(2), two(3)))
+        };
+        Avx2([eight(0), eight(8)])
+    }
+}
+
 macro_rules! lane {
-    ($t:ty, $tile:expr, $features:literal, $load:expr, $store:expr, $transpose:expr) => {
+    ($t:ty, $tile:expr, $features:literal, $load:expr, $store:expr, $transpose:expr, $row_sums:expr) => {
         impl Lane for $t {
             type Elem = f32;
             const TILE: Tile = $tile;
@@ -367,6 +402,10 @@ macro_rules! lane {
                 $transpose(rows)
             }
             #[inline(always)]
+            fn row_sums(rows: [Self; LANES]) -> Self {
+                $row_sums(rows)
+            }
+            #[inline(always)]
             fn vectorize<T>(f: impl FnOnce() -> T) -> T {
                 #[target_feature(enable = $features)]
                 fn inner<T>(f: impl FnOnce() -> T) -> T {
@@ -385,18 +424,20 @@ lane!(
     "avx512f,avx512dq,avx2,fma",
     |p| Avx512(unsafe { _mm512_loadu_ps(p) }),
     |s: Avx512, p| unsafe { _mm512_storeu_ps(p, s.0) },
-    transpose_avx512
+    transpose_avx512,
+    row_sums_avx512
 );
 lane!(
     Avx2,
-    Tile::Rows6Blocks1,
+    Tile::Rows3Blocks2,
     "avx2,fma",
     |p: *const f32| Avx2(unsafe { [_mm256_loadu_ps(p), _mm256_loadu_ps(p.add(8))] }),
     |s: Avx2, p: *mut f32| unsafe {
         _mm256_storeu_ps(p, s.0[0]);
         _mm256_storeu_ps(p.add(8), s.0[1]);
     },
-    transpose_avx2
+    transpose_avx2,
+    row_sums_avx2
 );
 
 impl Lane32 for Avx512 {

@@ -1,168 +1,138 @@
-//! The one matrix product behind every layer: C = start + A B with B and C in 16-lane blocks and A read by broadcast.
+//! The one matrix product behind every layer, forward and backward: C = A B with B and C in rows of 64, A read by broadcast.
 //!
-//! A tile of C stays in registers over the whole of the inner dimension: 24 accumulators for 4 loads and 6 broadcasts an
-//! inner step on AVX-512, so the two multiply-add ports never wait for memory.
+//! A tile of C stays in registers over the whole inner dimension: on AVX-512 24 accumulators for 4 loads and 6 broadcasts
+//! an inner step, so that the two multiply-add ports never wait for memory. What a tile starts as and what becomes of it
+//! while it is still in registers is a [`Finish`].
 
-use crate::lane::{LANES, Lane, Tile};
+use super::HIDDEN;
+use crate::lane::{LANES, Lane, Tile, build};
 
-/// What a product is added to.
-#[derive(Clone, Copy)]
-pub enum Start<'a, E> {
-    /// Nothing.
-    Zero,
-    /// Row `r` of C starts as `bias[r]`.
-    Bias(&'a [E]),
-    /// The product is added to C.
-    Add,
-}
+/// Blocks of a row of B and C.
+const BLOCKS: usize = HIDDEN / LANES;
 
-/// A matrix read element by element at any stride.
+/// A matrix read number by number, at any stride.
 #[derive(Clone, Copy)]
 pub struct Broadcast<'a, E> {
     pub data: &'a [E],
-    /// Distance of rows and of columns (the inner dimension).
+    /// Distance of neighbouring rows, and of neighbours along the inner dimension.
     pub row: usize,
     pub column: usize,
 }
 
-/// C[rows][columns] = start + A[rows][inner] B[inner][columns]. B and C are contiguous in rows of `columns`, a multiple of 16.
+/// How a tile of C begins, and where it goes.
+pub trait Finish<L: Lane> {
+    /// Whether C has a last row of its own, the column sums of B: the gradient by the biases, whose input is always 1.
+    const SUMS: bool = false;
+
+    /// Rows of C that there is room for.
+    fn rows(&self) -> usize;
+    /// What the product is added to.
+    ///
+    /// # Safety
+    /// `row` is below [`Finish::rows`] and `block` below 4.
+    unsafe fn start(&self, row: usize, block: usize) -> L;
+    /// Takes blocks `block` and `block + 1` of a row.
+    ///
+    /// # Safety
+    /// `row` is below [`Finish::rows`] and `block` below 3.
+    unsafe fn end(&mut self, row: usize, block: usize, pair: [L; 2]);
+}
+
+/// C[rows][64] = A[rows][inner] B[inner][64], and the sums of B's columns after it if [`Finish::SUMS`].
 ///
 /// # Panics
-/// If a slice is too short.
-#[inline]
-pub fn multiply<L: Lane>(
-    rows: usize,
-    inner: usize,
-    columns: usize,
-    a: Broadcast<L::Elem>,
-    b: &[L::Elem],
-    c: &mut [L::Elem],
-    start: Start<L::Elem>,
-) {
-    assert!(rows > 0 && inner > 0 && columns % LANES == 0);
+/// If a matrix is too small.
+#[inline(always)]
+pub fn multiply<L: Lane, F: Finish<L>>(rows: usize, inner: usize, a: Broadcast<L::Elem>, b: &[L::Elem], finish: F) {
+    let all = rows + F::SUMS as usize;
+    assert!(rows > 0 && inner > 0 && finish.rows() >= all && b.len() >= inner * HIDDEN);
     assert!(a.data.len() > (rows - 1) * a.row + (inner - 1) * a.column);
-    assert!(b.len() >= inner * columns && c.len() >= rows * columns);
-    assert!(!matches!(start, Start::Bias(bias) if bias.len() < rows));
+    let mut product = Product::<L, F> { inner, a, b: b.as_ptr(), finish };
+    // A function of its own: the caller would otherwise hold a copy of every tile shape for every product.
     L::vectorize(
         #[inline(always)]
         || {
-            // SAFETY: every index below is within the lengths asserted above.
+            // SAFETY: the matrices hold `all` rows and `inner` columns, as asserted.
             unsafe {
                 match L::TILE {
-                    Tile::Rows6Blocks4 => panels::<L, 6, 4>(rows, inner, columns, a, b, c, start),
-                    Tile::Rows6Blocks1 => panels::<L, 6, 1>(rows, inner, columns, a, b, c, start),
-                    Tile::Rows2Blocks1 => panels::<L, 2, 1>(rows, inner, columns, a, b, c, start),
+                    Tile::Rows6Blocks4 => product.cover::<6, 4>(all),
+                    Tile::Rows3Blocks2 => product.cover::<3, 2>(all),
+                    Tile::Rows1Blocks2 => product.cover::<1, 2>(all),
                 }
             }
         },
     );
 }
 
-/// Covers C with tiles of R x C blocks, then with what remains.
-#[inline(always)]
-unsafe fn panels<L: Lane, const R: usize, const C: usize>(
-    rows: usize,
+struct Product<'a, L: Lane, F> {
     inner: usize,
-    columns: usize,
-    a: Broadcast<L::Elem>,
-    b: &[L::Elem],
-    c: &mut [L::Elem],
-    start: Start<L::Elem>,
-) {
-    let panel = Panel { inner, columns, a, b: b.as_ptr(), start };
-    let mut r = 0;
-    // SAFETY: `r + R <= rows`, and what `multiply` asserted.
-    unsafe {
-        while r + R <= rows {
-            panel.row_of_tiles::<L, R, C>(r, c.as_mut_ptr());
-            r += R;
-        }
-        match rows - r {
-            0 => {}
-            1 => panel.row_of_tiles::<L, 1, C>(r, c.as_mut_ptr()),
-            2 => panel.row_of_tiles::<L, 2, C>(r, c.as_mut_ptr()),
-            3 => panel.row_of_tiles::<L, 3, C>(r, c.as_mut_ptr()),
-            4 => panel.row_of_tiles::<L, 4, C>(r, c.as_mut_ptr()),
-            _ => panel.row_of_tiles::<L, 5, C>(r, c.as_mut_ptr()),
-        }
-    }
+    a: Broadcast<'a, L::Elem>,
+    b: *const L::Elem,
+    finish: F,
 }
 
-struct Panel<'a, E> {
-    inner: usize,
-    columns: usize,
-    a: Broadcast<'a, E>,
-    b: *const E,
-    start: Start<'a, E>,
-}
-
-impl<E: Copy> Panel<'_, E> {
+impl<L: Lane, F: Finish<L>> Product<'_, L, F> {
+    /// Covers `all` rows with tiles of R x C blocks, then with what remains; the row of sums is in the last tile.
     #[inline(always)]
-    unsafe fn row_of_tiles<L: Lane<Elem = E>, const R: usize, const C: usize>(&self, r: usize, c: *mut E) {
-        let blocks = self.columns / LANES;
-        let mut block = 0;
-        // SAFETY: `block + C <= blocks`.
+    unsafe fn cover<const R: usize, const C: usize>(&mut self, all: usize) {
+        // SAFETY: promised by the caller; tiles end at `all`.
         unsafe {
-            while block + C <= blocks {
-                self.tile::<L, R, C>(r, block, c);
-                block += C;
+            let mut row = 0;
+            while row + R < all || (!F::SUMS && row + R == all) {
+                self.tiles::<R, C, false>(row);
+                row += R;
             }
-            while block < blocks {
-                self.tile::<L, R, 1>(r, block, c);
-                block += 1;
+            match all - row {
+                0 => {}
+                1 => self.last::<1, C>(row),
+                2 => self.last::<2, C>(row),
+                3 => self.last::<3, C>(row),
+                4 => self.last::<4, C>(row),
+                5 => self.last::<5, C>(row),
+                _ => self.last::<6, C>(row),
             }
         }
     }
 
     #[inline(always)]
-    unsafe fn tile<L: Lane<Elem = E>, const R: usize, const C: usize>(&self, r: usize, block: usize, c: *mut E) {
-        // SAFETY: rows r..r + R and blocks block..block + C are inside the matrices, as `multiply` asserted.
+    unsafe fn last<const R: usize, const C: usize>(&mut self, row: usize) {
+        // SAFETY: promised by the caller.
+        unsafe { if F::SUMS { self.tiles::<R, C, true>(row) } else { self.tiles::<R, C, false>(row) } }
+    }
+
+    #[inline(always)]
+    unsafe fn tiles<const R: usize, const C: usize, const SUMS: bool>(&mut self, row: usize) {
+        for block in (0..BLOCKS).step_by(C) {
+            // SAFETY: promised by the caller.
+            unsafe { self.tile::<R, C, SUMS>(row, block) };
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn tile<const R: usize, const C: usize, const SUMS: bool>(&mut self, row: usize, block: usize) {
+        // SAFETY: rows row..row + R and blocks block..block + C are inside the matrices; the row of sums is not read from A.
         unsafe {
-            let c = c.add(r * self.columns + block * LANES);
-            let at = |i: usize, j: usize| i * self.columns + j * LANES;
-            let mut sum: [[L; C]; R] = match self.start {
-                Start::Zero => [[L::zero(); C]; R],
-                Start::Bias(bias) => std::array::from_fn(|i| [L::splat(*bias.get_unchecked(r + i)); C]),
-                Start::Add => std::array::from_fn(|i| std::array::from_fn(|j| L::load(c.add(at(i, j))))),
-            };
-            let mut a = self.a.data.as_ptr().add(r * self.a.row);
+            let mut tile: [[L; C]; R] = build(|i| build(|j| self.finish.start(row + i, block + j)));
+            let mut a = self.a.data.as_ptr().wrapping_add(row * self.a.row);
             let mut b = self.b.add(block * LANES);
             for _ in 0..self.inner {
-                let right: [L; C] = std::array::from_fn(|j| L::load(b.add(j * LANES)));
-                for (i, row) in sum.iter_mut().enumerate() {
-                    let left = L::splat(*a.add(i * self.a.row));
-                    for (sum, &right) in row.iter_mut().zip(&right) {
-                        *sum = left.mul_add(right, *sum);
+                let right: [L; C] = build(|j| L::load(b.add(j * LANES)));
+                for (i, sums) in tile.iter_mut().enumerate() {
+                    if SUMS && i + 1 == R {
+                        *sums = build(|j| sums[j] + right[j]);
+                    } else {
+                        let left = L::splat(*a.add(i * self.a.row));
+                        *sums = build(|j| left.mul_add(right[j], sums[j]));
                     }
                 }
                 a = a.wrapping_add(self.a.column);
-                b = b.wrapping_add(self.columns);
+                b = b.wrapping_add(HIDDEN);
             }
-            for (i, row) in sum.iter().enumerate() {
-                for (j, &sum) in row.iter().enumerate() {
-                    sum.store(c.add(at(i, j)));
+            for (i, sums) in tile.iter().enumerate() {
+                for j in (0..C).step_by(2) {
+                    self.finish.end(row + i, block + j, [sums[j], sums[j + 1]]);
                 }
             }
         }
     }
-}
-
-/// Writes the transpose of `from[rows][64]` to `to[64][rows]`; `rows` is a multiple of 16.
-#[inline]
-pub fn transpose<L: Lane>(rows: usize, columns: usize, from: &[L::Elem], to: &mut [L::Elem]) {
-    assert!(rows % LANES == 0 && columns % LANES == 0 && from.len() >= rows * columns && to.len() >= rows * columns);
-    L::vectorize(
-        #[inline(always)]
-        || {
-            for r in (0..rows).step_by(LANES) {
-                for c in (0..columns).step_by(LANES) {
-                    let mut block: [L; LANES] = std::array::from_fn(|i| L::from_slice(&from[(r + i) * columns + c..]));
-                    L::transpose(&mut block);
-                    for (j, lane) in block.into_iter().enumerate() {
-                        lane.write(&mut to[(c + j) * rows + r..]);
-                    }
-                }
-            }
-        },
-    );
 }

@@ -1,15 +1,18 @@
-//! A multilayer perceptron with two hidden layers of 64 tanh units, on tiles of 64 samples.
+//! A multilayer perceptron with two hidden layers of 64 tanh units, forward and backward.
 //!
-//! Activations lie `[feature][64]`: a sample is a lane, so environments, network and loss share one layout and only the
-//! weight gradients, which sum over samples, need a transpose.
+//! Hidden activations lie `[sample][64]`: then every product of both passes is one [`multiply`], whose other operand is
+//! read by broadcast at whatever stride it has, and nothing is transposed but the second layer's weights, once a step.
+//! Observations, outputs and their derivatives lie `[feature][sample]`: a sample is a lane, as in the simulator and the
+//! loss. Narrow heads are dot products whose lanes are summed 16 samples at a time.
 
+use super::HIDDEN;
 use super::aligned::Aligned;
-use super::gemm::{Broadcast, Start, multiply, transpose};
-use super::{HIDDEN, TILE_BLOCKS, TILE_SAMPLES};
-use crate::lane::{LANES, Lane};
+use super::finish::{Accumulate, Activate, Descend};
+use super::gemm::{Broadcast, multiply};
+use crate::lane::{LANES, Lane, build};
 use std::ops::Range;
 
-/// Where the parameters of one network lie in the flat vector. Weights are `[inputs][outputs]`.
+/// Where the parameters of one network lie in the flat vector, in ranges that begin at multiples of 16.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shape {
     pub inputs: usize,
@@ -19,159 +22,124 @@ pub struct Shape {
 }
 
 impl Shape {
-    fn inputs_of(&self, layer: usize) -> usize {
-        if layer == 0 { self.inputs } else { HIDDEN }
+    /// First layer, `[inputs + 1][64]`: weights, and the biases as last row.
+    pub fn first(&self) -> Range<usize> {
+        self.offset..self.offset + (self.inputs + 1) * HIDDEN
     }
-    fn outputs_of(&self, layer: usize) -> usize {
-        if layer == 2 { self.outputs } else { HIDDEN }
+    /// Second layer, `[65][64]`: weights, and the biases as last row.
+    pub fn second(&self) -> Range<usize> {
+        let start = self.first().end;
+        start..start + (HIDDEN + 1) * HIDDEN
     }
-    /// The weights of layer 0, 1 or 2, `[inputs][outputs]`.
-    pub fn weights(&self, layer: usize) -> Range<usize> {
-        let before: usize = (0..layer).map(|l| (self.inputs_of(l) + 1) * self.outputs_of(l)).sum();
-        let start = self.offset + before;
-        start..start + self.inputs_of(layer) * self.outputs_of(layer)
+    /// Weights of the head, `[outputs][64]`.
+    pub fn head(&self) -> Range<usize> {
+        let start = self.second().end;
+        start..start + self.outputs * HIDDEN
     }
-    /// The biases of layer 0, 1 or 2.
-    pub fn biases(&self, layer: usize) -> Range<usize> {
-        let start = self.weights(layer).end;
-        start..start + self.outputs_of(layer)
+    /// Biases of the head, `[outputs]`.
+    pub fn head_biases(&self) -> Range<usize> {
+        let start = self.head().end;
+        start..start + self.outputs
     }
-    /// Offset after the last parameter.
+    /// Offset after the last parameter, rounded up to a multiple of 16.
     pub fn end(&self) -> usize {
-        self.biases(2).end
+        self.head_biases().end.next_multiple_of(LANES)
     }
 }
 
-/// Activations of the hidden layers, `[64][64]` each.
+/// Activations of the hidden layers, `[sample][64]` each.
 #[derive(Clone)]
 pub struct Hidden<E> {
     first: Aligned<E>,
     second: Aligned<E>,
 }
 
-impl<E: Default + Copy> Default for Hidden<E> {
-    fn default() -> Self {
-        let tile = Aligned::zeros(HIDDEN * TILE_SAMPLES);
-        Hidden { first: tile.clone(), second: tile }
+impl<E: Copy + Default> Hidden<E> {
+    /// Room for `samples` samples.
+    pub fn new(samples: usize) -> Self {
+        let layer = Aligned::zeros(samples * HIDDEN);
+        Hidden { first: layer.clone(), second: layer }
     }
 }
 
-/// y = W3' tanh(W2' tanh(W1' x + b1) + b2) + b3: `x` `[inputs][64]`, `y` `[outputs][64]`.
-#[inline]
-pub fn forward<L: Lane>(shape: &Shape, p: &[L::Elem], x: &[L::Elem], h: &mut Hidden<L::Elem>, y: &mut [L::Elem]) {
-    let layer = |l: usize, x: &[L::Elem], y: &mut [L::Elem]| {
-        let (n, m) = (shape.inputs_of(l), shape.outputs_of(l));
-        let a = Broadcast { data: &p[shape.weights(l)], row: 1, column: m };
-        multiply::<L>(m, n, TILE_SAMPLES, a, x, y, Start::Bias(&p[shape.biases(l)]));
-    };
-    layer(0, x, &mut h.first);
-    tanh::<L>(&mut h.first);
-    layer(1, &h.first, &mut h.second);
-    tanh::<L>(&mut h.second);
-    layer(2, &h.second, y);
-}
-
-#[inline]
-fn tanh<L: Lane>(x: &mut [L::Elem]) {
-    L::vectorize(
-        #[inline(always)]
-        || {
-            for x in x.chunks_exact_mut(LANES) {
-                L::from_slice(x).tanh().write(x);
-            }
-        },
-    );
-}
-
-/// Scratch of the backward pass.
-#[derive(Clone)]
-pub struct Backward<E> {
-    delta: Aligned<E>,
-    turned: Aligned<E>,
-}
-
-impl<E: Default + Copy> Default for Backward<E> {
-    fn default() -> Self {
-        let tile = Aligned::zeros(HIDDEN * TILE_SAMPLES);
-        Backward { delta: tile.clone(), turned: tile }
-    }
-}
-
-/// Adds the gradient of a tile to `g`: `x` and `h` as in [`forward`], `dy` `[outputs][64]` the derivative by the outputs.
-#[inline]
-pub fn backward<L: Lane>(
+/// y = W3' tanh(W2' tanh(W1' x + b1) + b2) + b3 of the first `samples` of `pitch` samples: `x` `[inputs][pitch]`,
+/// `y` `[outputs][pitch]`.
+#[inline(always)]
+pub fn forward<L: Lane>(
     shape: &Shape,
     p: &[L::Elem],
+    samples: usize,
+    pitch: usize,
     x: &[L::Elem],
-    h: &Hidden<L::Elem>,
-    dy: &[L::Elem],
-    scratch: &mut Backward<L::Elem>,
-    g: &mut [L::Elem],
+    h: &mut Hidden<L::Elem>,
+    y: &mut [L::Elem],
 ) {
-    let Backward { delta, turned } = scratch;
-    let m = shape.outputs;
-    head_gradient::<L>(m, &h.second, dy, &mut g[shape.weights(2)]);
-    add_row_sums::<L>(dy, &mut g[shape.biases(2)]);
-    let a = Broadcast { data: &p[shape.weights(2)], row: m, column: 1 };
-    multiply::<L>(HIDDEN, m, TILE_SAMPLES, a, dy, delta, Start::Zero);
-    through_tanh::<L>(delta, &h.second, &mut g[shape.biases(1)]);
-
-    transpose::<L>(HIDDEN, TILE_SAMPLES, delta, turned);
-    let a = Broadcast { data: &h.first, row: TILE_SAMPLES, column: 1 };
-    multiply::<L>(HIDDEN, TILE_SAMPLES, HIDDEN, a, turned, &mut g[shape.weights(1)], Start::Add);
-    let a = Broadcast { data: &p[shape.weights(1)], row: HIDDEN, column: 1 };
-    // `turned` is free again: the next layer's delta goes there, and its transpose back.
-    multiply::<L>(HIDDEN, HIDDEN, TILE_SAMPLES, a, delta, turned, Start::Zero);
-    through_tanh::<L>(turned, &h.first, &mut g[shape.biases(0)]);
-
-    transpose::<L>(HIDDEN, TILE_SAMPLES, turned, delta);
-    let a = Broadcast { data: x, row: TILE_SAMPLES, column: 1 };
-    multiply::<L>(shape.inputs, TILE_SAMPLES, HIDDEN, a, delta, &mut g[shape.weights(0)], Start::Add);
+    let layer = |a: Broadcast<L::Elem>, p: &[L::Elem], out: &mut [L::Elem]| {
+        let inner = p.len() / HIDDEN - 1;
+        multiply::<L, _>(samples, inner, a, p, Activate::new(&p[inner * HIDDEN..], out));
+    };
+    layer(Broadcast { data: x, row: 1, column: pitch }, &p[shape.first()], &mut h.first);
+    layer(Broadcast { data: &h.first, row: HIDDEN, column: 1 }, &p[shape.second()], &mut h.second);
+    head::<L>(&p[shape.head()], &p[shape.head_biases()], samples, pitch, &h.second, y);
 }
 
-/// delta *= 1 - h^2, and adds its sums over the samples to `bias`.
-#[inline]
-fn through_tanh<L: Lane>(delta: &mut [L::Elem], h: &[L::Elem], bias: &mut [L::Elem]) {
+/// y[k][sample] = b[k] + w[k] . h[sample].
+#[inline(always)]
+fn head<L: Lane>(w: &[L::Elem], b: &[L::Elem], samples: usize, pitch: usize, h: &[L::Elem], y: &mut [L::Elem]) {
     L::vectorize(
         #[inline(always)]
         || {
-            for (d, h) in delta.chunks_exact_mut(LANES).zip(h.chunks_exact(LANES)) {
-                let h = L::from_slice(h);
-                (L::from_slice(d) * (-h).mul_add(h, L::one())).write(d);
-            }
-        },
-    );
-    add_row_sums::<L>(delta, bias);
-}
-
-/// sums[r] += sum of row r of `x[rows][64]`.
-#[inline]
-fn add_row_sums<L: Lane>(x: &[L::Elem], sums: &mut [L::Elem]) {
-    L::vectorize(
-        #[inline(always)]
-        || {
-            for (row, sum) in x.chunks_exact(TILE_SAMPLES).zip(sums) {
-                let blocks = row.chunks_exact(LANES).skip(1).fold(L::from_slice(row), |s, b| s + L::from_slice(b));
-                *sum = *sum + blocks.sum();
-            }
-        },
-    );
-}
-
-/// g[i][j] += sum over samples of h[i] dy[j]; the head is too narrow for the matrix product.
-#[inline]
-fn head_gradient<L: Lane>(outputs: usize, h: &[L::Elem], dy: &[L::Elem], g: &mut [L::Elem]) {
-    L::vectorize(
-        #[inline(always)]
-        || {
-            for (i, h) in h.chunks_exact(TILE_SAMPLES).enumerate() {
-                let h: [L; TILE_BLOCKS] = std::array::from_fn(|b| L::from_slice(&h[b * LANES..]));
-                for (j, dy) in dy.chunks_exact(TILE_SAMPLES).enumerate() {
-                    let sum = (0..TILE_BLOCKS).fold(L::zero(), |s, b| h[b].mul_add(L::from_slice(&dy[b * LANES..]), s));
-                    let g = &mut g[i * outputs + j];
-                    *g = *g + sum.sum();
+            for (k, (w, b)) in w.chunks_exact(HIDDEN).zip(b).enumerate() {
+                let w: [L; HIDDEN / LANES] = build(|j| L::from_slice(&w[j * LANES..]));
+                for (block, h) in h[..samples * HIDDEN].chunks_exact(LANES * HIDDEN).enumerate() {
+                    let products = build(|i| {
+                        let h = |j: usize| L::from_slice(&h[i * HIDDEN + j * LANES..]);
+                        (1..HIDDEN / LANES).fold(w[0] * h(0), |sum, j| w[j].mul_add(h(j), sum))
+                    });
+                    (L::row_sums(products) + L::splat(*b)).write(&mut y[k * pitch + block * LANES..]);
                 }
             }
         },
     );
+}
+
+/// Writes the transpose of the second layer's weights to `turned` `[64][64]`, for [`backward`].
+#[inline(always)]
+pub fn turn<L: Lane>(shape: &Shape, p: &[L::Elem], turned: &mut [L::Elem]) {
+    let p = &p[shape.second()];
+    for (r, c) in (0..HIDDEN * HIDDEN / LANES / LANES).map(|i| (i / 4 * LANES, i % 4 * LANES)) {
+        let mut block = build(|i| L::from_slice(&p[(r + i) * HIDDEN + c..]));
+        L::transpose(&mut block);
+        (0..LANES).for_each(|i| block[i].write(&mut turned[(c + i) * HIDDEN + r..]));
+    }
+}
+
+/// Adds the gradient of a tile to `g`, but for the head's biases: `x` and `h` as [`forward`] left them, `dy`
+/// `[outputs][pitch]` the derivative by the outputs. Destroys `h`.
+#[inline(always)]
+pub fn backward<L: Lane>(
+    shape: &Shape,
+    p: &[L::Elem],
+    turned: &[L::Elem],
+    samples: usize,
+    pitch: usize,
+    x: &[L::Elem],
+    h: &mut Hidden<L::Elem>,
+    dy: &[L::Elem],
+    g: &mut [L::Elem],
+) {
+    let Hidden { first, second } = h;
+    let by_feature = |data| Broadcast { data, row: pitch, column: 1 };
+    let by_sample = |data| Broadcast { data, row: 1, column: pitch };
+
+    let head = Accumulate::<_, false>(&mut g[shape.head()]);
+    multiply::<L, _>(shape.outputs, samples, by_feature(dy), second, head);
+    multiply::<L, _>(samples, shape.outputs, by_sample(dy), &p[shape.head()], Descend(second));
+
+    let inputs = Broadcast { data: first, row: 1, column: HIDDEN };
+    multiply::<L, _>(HIDDEN, samples, inputs, second, Accumulate::<_, true>(&mut g[shape.second()]));
+    let deltas = Broadcast { data: second, row: HIDDEN, column: 1 };
+    multiply::<L, _>(samples, HIDDEN, deltas, turned, Descend(first));
+
+    multiply::<L, _>(shape.inputs, samples, by_feature(x), first, Accumulate::<_, true>(&mut g[shape.first()]));
 }

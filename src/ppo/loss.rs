@@ -2,7 +2,7 @@
 //!
 //! total = surrogate - entropy_coefficient entropy + magnitude_coefficient E|tanh(mean)|^2 + value_coefficient value
 
-use crate::lane::Lane;
+use crate::lane::{Lane, build};
 use crate::policy::{ACTIONS, log_prob_of};
 
 /// Weights of the loss's terms.
@@ -46,7 +46,7 @@ pub const TERMS: [&str; 5] = ["surrogate", "value", "magnitude", "approx_kl", "c
 pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
     let one = L::one();
     let inverse = s.log_std.map(|x| (-x).exp());
-    let noise: [L; ACTIONS] = std::array::from_fn(|k| (s.z[k] - s.mean[k]) * inverse[k]);
+    let noise: [L; ACTIONS] = build(|k| (s.z[k] - s.mean[k]) * inverse[k]);
     let log_ratio = log_prob_of(noise, s.log_std) - s.old_log_prob;
     let ratio = log_ratio.exp();
     let free = ratio * s.advantage;
@@ -59,11 +59,11 @@ pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
     let pull = share * L::of(2.0 * w.magnitude);
     let error = s.value - s.ret;
     Answer {
-        d_mean: std::array::from_fn(|k| {
+        d_mean: build(|k| {
             let slope = (-squashed[k]).mul_add(squashed[k], one);
             (d_log_prob * noise[k]).mul_add(inverse[k], squashed[k] * slope * pull)
         }),
-        d_log_std: std::array::from_fn(|k| d_log_prob * noise[k].mul_add(noise[k], -one)),
+        d_log_std: build(|k| d_log_prob * noise[k].mul_add(noise[k], -one)),
         d_value: error * share * L::of(w.value),
         terms: [
             -free.min(clipped),
