@@ -5,7 +5,7 @@
 use crate::config::Config;
 use crate::dynamics::{Factors, Parameters, State};
 use crate::env::{DT, Race};
-use crate::lane::{Kernel, LANES, Lane32, Level, dispatch};
+use crate::lane::{Kernel, LANES, Lane32, Level, dispatch, each};
 use crate::nn::{HIDDEN, TILE_BLOCKS};
 use crate::peak;
 use crate::policy::ACTIONS;
@@ -153,7 +153,7 @@ impl Kernel for Fly<'_> {
         let race = self.race;
         let mut seen = vec![0.0f32; race.observations() * LANES];
         let mut tally = Default::default();
-        let action = [0.02, -0.02, 0.01, race.hover_command].map(L::of);
+        let action = each!([0.02, -0.02, 0.01, race.hover_command], |x| L::of(x));
         for saved in self.tile {
             let mut block = race.load::<L>(saved);
             for _ in 0..self.steps {

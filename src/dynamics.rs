@@ -10,7 +10,7 @@ pub mod drag;
 pub mod response;
 pub mod thrust;
 
-use crate::lane::{Lane, Real};
+use crate::lane::{Lane, Real, build};
 use crate::vehicle::Vehicle;
 use attitude::{Quaternion, body_axes, compose, small_rotation};
 
@@ -68,8 +68,8 @@ impl Parameters<f64> {
     /// The parameters of `vehicle` with `factors` for steps of `dt` seconds.
     pub fn new(vehicle: &Vehicle, factors: &Factors, dt: f64) -> Self {
         let tau = vehicle.time_constants();
-        let alpha = std::array::from_fn(|i| response::alpha(tau[i] * factors.time_constant[i], dt));
-        let mean_alpha = std::array::from_fn(|i| {
+        let alpha = build!(|i| response::alpha(tau[i] * factors.time_constant[i], dt));
+        let mean_alpha = build!(|i| {
             1.0 - tau[i] * factors.time_constant[i] / dt * response::alpha(tau[i] * factors.time_constant[i], dt)
         });
         let max_rate = vehicle.max_rates_rad_s();
@@ -77,7 +77,7 @@ impl Parameters<f64> {
             dt,
             alpha,
             mean_alpha,
-            max_rate: std::array::from_fn(|i| max_rate[i] * factors.max_rate[i]),
+            max_rate: build!(|i| max_rate[i] * factors.max_rate[i]),
             thrust: vehicle.thrust_n.map(|c| c * factors.thrust / vehicle.mass_kg),
             drag: drag::ellipsoid(&vehicle.drag).map(|k| k * factors.drag / vehicle.mass_kg),
             gravity: vehicle.gravity_m_s2,
@@ -144,7 +144,7 @@ impl<R: Real> State<R> {
     /// Body rates, rad/s, body frame.
     #[inline(always)]
     pub fn body_rates(&self, p: &Parameters<R>) -> [R; 3] {
-        std::array::from_fn(|i| self.command[i] * p.max_rate[i])
+        build!(|i| self.command[i] * p.max_rate[i])
     }
 }
 
@@ -156,11 +156,11 @@ impl<R: Real> State<R> {
 #[inline(always)]
 pub fn step<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R> {
     let half_dt = p.dt * R::of(0.5);
-    let mean: [R; 4] = std::array::from_fn(|i| response::toward(s.command[i], action[i], p.mean_alpha[i]));
-    let command = std::array::from_fn(|i| response::toward(s.command[i], action[i], p.alpha[i]));
+    let mean: [R; 4] = build!(|i| response::toward(s.command[i], action[i], p.mean_alpha[i]));
+    let command = build!(|i| response::toward(s.command[i], action[i], p.alpha[i]));
 
     // The same half rotation leads to the middle and from there to the end.
-    let half_turn = small_rotation(std::array::from_fn(|i| mean[i] * p.max_rate[i]), half_dt);
+    let half_turn = small_rotation(build!(|i| mean[i] * p.max_rate[i]), half_dt);
     let middle = compose(s.attitude, half_turn);
     let attitude = attitude::normalized(compose(middle, half_turn));
 
@@ -168,13 +168,13 @@ pub fn step<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R
     let voltage = battery::discharged(s.voltage, p.voltage_rate, half_dt);
     let lift = thrust::specific_thrust(&p.thrust, mean[3], voltage);
     let free: [R; 3] = [axes[2][0] * lift, axes[2][1] * lift, axes[2][2].mul_add(lift, -p.gravity)];
-    let early: [R; 3] = std::array::from_fn(|i| free[i].mul_add(half_dt, s.velocity[i]));
+    let early: [R; 3] = build!(|i| free[i].mul_add(half_dt, s.velocity[i]));
     let damping = drag::damping(&p.drag, &axes, early);
     // `early` lacks the half step of drag; to first order that changes the quadratic drag by twice its own share.
     let damping = (damping * p.dt).mul_add(-damping, damping);
 
-    let acceleration: [R; 3] = std::array::from_fn(|i| early[i].mul_add(-damping, free[i]));
-    let velocity: [R; 3] = std::array::from_fn(|i| acceleration[i].mul_add(p.dt, s.velocity[i]));
-    let position = std::array::from_fn(|i| (s.velocity[i] + velocity[i]).mul_add(half_dt, s.position[i]));
+    let acceleration: [R; 3] = build!(|i| early[i].mul_add(-damping, free[i]));
+    let velocity: [R; 3] = build!(|i| acceleration[i].mul_add(p.dt, s.velocity[i]));
+    let position = build!(|i| (s.velocity[i] + velocity[i]).mul_add(half_dt, s.position[i]));
     State { position, velocity, attitude, command, voltage: battery::discharged(voltage, p.voltage_rate, half_dt) }
 }

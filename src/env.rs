@@ -12,7 +12,7 @@ pub mod terminate;
 use crate::check::{Check, Invalid};
 use crate::dynamics::attitude::{body_axes, dot};
 use crate::dynamics::{self, Factors, Parameters, State};
-use crate::lane::{Bits, LANES, Lane, Lane32, Mask};
+use crate::lane::{Bits, LANES, Lane, Lane32, Mask, build, each, sum_of_squares};
 use crate::rng::Philox;
 use crate::track::spline::Spline;
 use crate::track::{Pose, Track};
@@ -223,15 +223,20 @@ impl<L: Lane32> Block<L> {
     /// The block's environments, part of the noise's counter.
     #[inline(always)]
     fn environments(&self) -> L::Bits {
-        L::Bits::from_array(std::array::from_fn(|i| self.first + i as u32))
+        L::Bits::from_array(build!(|i| self.first + i as u32))
     }
 
     /// The observation of each lane.
     #[inline(always)]
     pub fn observe(&self, race: &Race) -> [L; OBSERVATIONS] {
         let config = &race.config.noise;
-        let noise = race.noisy.then(|| noise::of_observation(config, &race.rng, self.environments(), self.step));
-        observe::observe(self, noise.as_ref())
+        // No closure: a closure is compiled on its own, without the block's instructions.
+        if race.noisy {
+            let noise = noise::of_observation(config, &race.rng, self.environments(), self.step);
+            observe::observe(self, Some(&noise))
+        } else {
+            observe::observe(self, None)
+        }
     }
 
     /// One step under `action`, as the policy gave it. Ended episodes stay as they ended.
@@ -240,7 +245,7 @@ impl<L: Lane32> Block<L> {
         let config = &race.config;
         let applied = if race.noisy {
             let noise = noise::of_action::<L>(&config.noise, &race.rng, self.environments(), self.step);
-            std::array::from_fn(|i| (action[i] + noise[i]).clamp(-L::one(), L::one()))
+            build!(|i| (action[i] + noise[i]).clamp(-L::one(), L::one()))
         } else {
             action
         };
@@ -252,9 +257,9 @@ impl<L: Lane32> Block<L> {
         self.gate_clock = L::select(crossing.passed, L::zero(), self.gate_clock + L::one());
         let timed_out = L::of(config.gate_timeout_s / race.dt).le(self.gate_clock);
 
-        let distance = [before, after].map(|v| dot(v, v).sqrt());
+        let distance = each!([before, after], |v| sum_of_squares(v).sqrt());
         let forward = self.gate.rotate(body_axes(self.state.attitude)[0]);
-        let change: [L; 4] = std::array::from_fn(|i| action[i] - self.history[0][i]);
+        let change: [L; 4] = build!(|i| action[i] - self.history[0][i]);
         let terms = reward::terms(
             &config.reward,
             &reward::Step {
@@ -263,10 +268,13 @@ impl<L: Lane32> Block<L> {
                 timed_out,
                 height: self.state.position[2],
                 facing: -dot(forward, after) / distance[1].max(L::of(1e-3)),
-                action_change: change.iter().fold(L::zero(), |sum, &x| x.mul_add(x, sum)),
+                action_change: sum_of_squares(change),
             },
         );
-        let reward = terms.iter().skip(1).fold(terms[0], |sum, &term| sum + term);
+        let mut reward = terms[0];
+        for &term in &terms[1..] {
+            reward = reward + term;
+        }
         self.gathered = self.gathered + reward;
         self.history = [action, self.history[0], self.history[1]];
         self.step += 1;

@@ -25,7 +25,7 @@ pub const LANES: usize = 16;
 /// `[f(0), f(1), ..]`, as [`std::array::from_fn`], but inlined: a closure over blocks that is called as a function of its own
 /// passes them through memory and does not know which instructions it may use.
 #[inline(always)]
-pub fn build<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
+pub fn build_with<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
     let mut all = [const { MaybeUninit::uninit() }; N];
     // One call only: the compiler inlines a closure that is called in one place, whatever its size.
     for (i, one) in all.iter_mut().enumerate() {
@@ -33,6 +33,48 @@ pub fn build<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
     }
     // SAFETY: the loop has written every element.
     unsafe { (&raw const all).cast::<[T; N]>().read() }
+}
+
+/// `[f(a[0]), f(a[1]), ..]`, as the array's own `map`, but inlined.
+#[inline(always)]
+pub fn each_with<A: Copy, T: Copy, const N: usize>(a: [A; N], mut f: impl FnMut(A) -> T) -> [T; N] {
+    build_with(
+        #[inline(always)]
+        |i| f(a[i]),
+    )
+}
+
+/// [`build_with`] and a closure that is inlined wherever it is used: `build!(|i| a[i] + b[i])`.
+macro_rules! build {
+    (|$i:pat_param| $body:expr) => {
+        $crate::lane::build_with(
+            #[inline(always)]
+            |$i| $body,
+        )
+    };
+}
+pub(crate) use build;
+
+/// The array of a function of each element, inlined: `each!(a, |x| x * scale)`.
+macro_rules! each {
+    ($array:expr, |$x:pat_param| $body:expr) => {{
+        $crate::lane::each_with(
+            $array,
+            #[inline(always)]
+            |$x| $body,
+        )
+    }};
+}
+pub(crate) use each;
+
+/// x0^2 + x1^2 + ..
+#[inline(always)]
+pub fn sum_of_squares<R: Real, const N: usize>(x: [R; N]) -> R {
+    let mut sum = x[0] * x[0];
+    for &x in &x[1..] {
+        sum = x.mul_add(x, sum);
+    }
+    sum
 }
 
 /// A truth value per lane.

@@ -1,6 +1,6 @@
 //! The machine's multiply-add peak, measured: the limit that training is compared with.
 
-use crate::lane::{Kernel, Lane32, Level, dispatch};
+use crate::lane::{Kernel, Lane32, Level, build, dispatch};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -14,7 +14,7 @@ impl Kernel for MultiplyAdds {
     #[inline(always)]
     fn run<L: Lane32>(self) -> f32 {
         let (a, b) = (L::splat(black_box(0.9999)), L::splat(black_box(0.001)));
-        let mut x: [L; CHAINS] = std::array::from_fn(|i| L::splat(black_box(i as f32)));
+        let mut x: [L; CHAINS] = build!(|i| L::splat(black_box(i as f32)));
         for _ in 0..ROUNDS {
             for x in &mut x {
                 *x = x.mul_add(a, b);

@@ -11,7 +11,7 @@ const HALF_LOG_TAU: f64 = 0.918_938_533_204_672_7;
 /// changes the density of a by a factor that cancels in PPO's ratio.
 #[inline(always)]
 pub fn sample<R: Real>(mean: [R; ACTIONS], log_std: [R; ACTIONS], noise: [R; ACTIONS]) -> ([R; ACTIONS], R) {
-    let z = build(|k| log_std[k].exp().mul_add(noise[k], mean[k]));
+    let z = build!(|k| log_std[k].exp().mul_add(noise[k], mean[k]));
     (z, log_prob_of(noise, log_std))
 }
 

@@ -1,7 +1,7 @@
 //! A batch of vehicles without a race: struct of arrays in blocks of 16, on all cores.
 
 use crate::dynamics::{Parameters, State, step};
-use crate::lane::{Kernel, LANES, Lane, Lane32, Level, Portable, dispatch};
+use crate::lane::{Kernel, LANES, Lane, Lane32, Level, Portable, build, dispatch};
 use rayon::prelude::*;
 
 /// How a block rests in memory.
@@ -68,7 +68,7 @@ impl Kernel for Advance<'_> {
     fn run<L: Lane32>(self) {
         let (state, parameters) = self.block;
         let lane = |lane: usize| self.actions[lane.min(self.actions.len() - 1)];
-        let action = std::array::from_fn(|k| L::from_array(std::array::from_fn(|i| lane(i)[k])));
+        let action = build!(|k| L::from_array(build!(|i| lane(i)[k])));
         let parameters = parameters.map(|x| L::from_array(x.0));
         let mut flying = state.map(|x| L::from_array(x.0));
         for _ in 0..self.steps {

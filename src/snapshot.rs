@@ -7,14 +7,14 @@ use crate::env::observe::{LAYOUT, OBSERVATIONS};
 use crate::env::{DT, EnvConfig};
 use crate::eval::EvalConfig;
 use crate::fsio;
-use crate::nn::{HIDDEN, Network};
+use crate::nn::mlp::Shape;
+use crate::nn::{HIDDEN, Layer, Network};
 use crate::policy::ACTIONS;
 use crate::track::Track;
 use crate::vehicle::Vehicle;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView, serialize};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::ops::Range;
 use std::path::Path;
 
 /// Changes with every change that makes older files unreadable.
@@ -92,7 +92,7 @@ impl Snapshot {
         let (observations, actions) = self_test::vectors(&self.network);
         let mut tensors: Vec<(String, Vec<usize>, Vec<u8>)> = tensors(&self.network)
             .into_iter()
-            .map(|(name, shape, range)| (name, shape, bytes_of(&self.network.parameters[range])))
+            .map(|(name, shape, numbers)| (name, shape, bytes_of(&numbers)))
             .collect();
         let samples = self_test::SAMPLES;
         tensors.push(("self_test.observation".into(), vec![samples, OBSERVATIONS], bytes_of(&observations)));
@@ -118,10 +118,7 @@ impl Snapshot {
     fn from_bytes(bytes: &[u8]) -> Result<Self, Invalid> {
         let about = read_about(bytes)?;
         let file = SafeTensors::deserialize(bytes).map_err(|error| Invalid::new("file", error, "", ""))?;
-        let mut network = Network::zeros(OBSERVATIONS);
-        for (name, shape, range) in tensors(&network) {
-            network.parameters[range].copy_from_slice(&read_tensor(&file, &name, &shape)?);
-        }
+        let network = read_network(&file)?;
         let samples = self_test::SAMPLES;
         let observations = read_tensor(&file, "self_test.observation", &[samples, OBSERVATIONS])?;
         let actions = read_tensor(&file, "self_test.action", &[samples, ACTIONS])?;
@@ -147,19 +144,41 @@ fn read_about(bytes: &[u8]) -> Result<About, Invalid> {
     Ok(metadata.about)
 }
 
-/// Names and shapes of the tensors, and where their numbers lie in the network's flat vector.
-fn tensors(network: &Network<f32>) -> Vec<(String, Vec<usize>, Range<usize>)> {
+/// The networks by name.
+fn networks(network: &Network<f32>) -> [(&'static str, Shape); 2] {
+    [("actor", network.actor.clone()), ("critic", network.critic.clone())]
+}
+
+/// Names, shapes and numbers of the network's tensors.
+fn tensors(network: &Network<f32>) -> Vec<(String, Vec<usize>, Vec<f32>)> {
     let mut all = Vec::new();
-    for (name, shape) in [("actor", &network.actor), ("critic", &network.critic)] {
-        for layer in 0..3 {
-            let (weights, biases) = (shape.weights(layer), shape.biases(layer));
-            let inputs = if layer == 0 { shape.inputs } else { HIDDEN };
-            all.push((format!("{name}.{layer}.weight"), vec![inputs, biases.len()], weights));
-            all.push((format!("{name}.{layer}.bias"), vec![biases.len()], biases));
+    for (name, shape) in networks(network) {
+        for index in 0..3 {
+            let Layer { weights, biases } = network.layer(&shape, index);
+            let outputs = biases.len();
+            all.push((format!("{name}.{index}.weight"), vec![weights.len() / outputs, outputs], weights));
+            all.push((format!("{name}.{index}.bias"), vec![outputs], biases));
         }
     }
-    all.push(("log_std".into(), vec![ACTIONS], network.log_std_range()));
+    all.push(("log_std".into(), vec![ACTIONS], network.log_std().to_vec()));
     all
+}
+
+/// The network that [`tensors`] was made of.
+fn read_network(file: &SafeTensors) -> Result<Network<f32>, Invalid> {
+    let mut network = Network::zeros(OBSERVATIONS);
+    for (name, shape) in networks(&network) {
+        for index in 0..3 {
+            let inputs = if index == 0 { shape.inputs } else { HIDDEN };
+            let outputs = if index == 2 { shape.outputs } else { HIDDEN };
+            let weights = read_tensor(file, &format!("{name}.{index}.weight"), &[inputs, outputs])?;
+            let biases = read_tensor(file, &format!("{name}.{index}.bias"), &[outputs])?;
+            network.set_layer(&shape, index, &Layer { weights, biases });
+        }
+    }
+    let log_std = network.log_std_range();
+    network.parameters[log_std].copy_from_slice(&read_tensor(file, "log_std", &[ACTIONS])?);
+    Ok(network)
 }
 
 fn bytes_of(numbers: &[f32]) -> Vec<u8> {

@@ -1,6 +1,6 @@
 //! Attitude: unit quaternions (w, x, y, z), body to world.
 
-use crate::lane::Real;
+use crate::lane::{Real, each};
 
 pub type Quaternion<R> = [R; 4];
 
@@ -16,17 +16,26 @@ pub fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[1].mul_add(b[2], -(a[2] * b[1])), a[2].mul_add(b[0], -(a[0] * b[2])), a[0].mul_add(b[1], -(a[1] * b[0]))]
 }
 
+/// c0 + c1 x + .. + c4 x^4.
+#[inline(always)]
+fn polynomial<R: Real>(c: [f64; 5], x: R) -> R {
+    let mut y = R::of(c[4]);
+    for k in (0..4).rev() {
+        y = y.mul_add(x, R::of(c[k]));
+    }
+    y
+}
+
 /// The rotation that constant body rates (rad/s) make in `dt` seconds.
 ///
 /// Series in the squared half angle, exact to double precision up to a turn of half a radian.
 #[inline(always)]
 pub fn small_rotation<R: Real>(rates: [R; 3], dt: R) -> Quaternion<R> {
     let h = dt * R::of(0.5);
-    let v = rates.map(|w| w * h);
+    let v = each!(rates, |w| w * h);
     let x = dot(v, v);
-    let series = |c: [f64; 5]| c[..4].iter().rev().fold(R::of(c[4]), |y, &c| y.mul_add(x, R::of(c)));
-    let sinc = series([1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0]);
-    let cos = series([1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0]);
+    let sinc = polynomial([1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0], x);
+    let cos = polynomial([1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0], x);
     [cos, v[0] * sinc, v[1] * sinc, v[2] * sinc]
 }
 
@@ -48,7 +57,7 @@ pub fn compose<R: Real>(q: Quaternion<R>, r: Quaternion<R>) -> Quaternion<R> {
 pub fn normalized<R: Real>(q: Quaternion<R>) -> Quaternion<R> {
     let n = q[0].mul_add(q[0], dot([q[1], q[2], q[3]], [q[1], q[2], q[3]]));
     let scale = n.mul_add(R::of(-0.5), R::of(1.5));
-    q.map(|x| x * scale)
+    each!(q, |x| x * scale)
 }
 
 /// The body's x, y and z axes in the world.

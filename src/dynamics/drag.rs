@@ -1,7 +1,7 @@
 //! Aerodynamic drag of an ellipsoid: its projected area, and so the drag, depends on the direction of flight.
 
 use super::attitude::dot;
-use crate::lane::Real;
+use crate::lane::{Real, build};
 use crate::vehicle::Drag;
 
 /// rho C_D / 2 times pi times the product of the two other semi-axes, for flow along each body axis, kg/m.
@@ -17,6 +17,6 @@ pub fn ellipsoid(drag: &Drag) -> [f64; 3] {
 /// world. |v| times the projected area needs no division by |v|.
 #[inline(always)]
 pub fn damping<R: Real>(k: &[R; 3], axes: &[[R; 3]; 3], velocity: [R; 3]) -> R {
-    let scaled: [R; 3] = std::array::from_fn(|i| k[i] * dot(axes[i], velocity));
+    let scaled: [R; 3] = build!(|i| k[i] * dot(axes[i], velocity));
     dot(scaled, scaled).sqrt()
 }

@@ -1,7 +1,7 @@
 //! Gates as the vehicle meets them: the target gate's frame, and what counts as passing it (paper section 4.3).
 
 use crate::dynamics::attitude::dot;
-use crate::lane::{Lane, Real};
+use crate::lane::{Lane, Real, build, each};
 use crate::track::{GateKind, Track};
 
 /// The target gate of a vehicle: frame in the world and the way to the next two gates.
@@ -44,13 +44,13 @@ impl<R: Real> GateFrame<R> {
     /// A world vector in the gate's frame.
     #[inline(always)]
     pub fn rotate(&self, v: [R; 3]) -> [R; 3] {
-        self.axes.map(|axis| dot(axis, v))
+        each!(self.axes, |axis| dot(axis, v))
     }
 
     /// A world point in the gate's frame.
     #[inline(always)]
     pub fn locate(&self, point: [R; 3]) -> [R; 3] {
-        self.rotate(std::array::from_fn(|i| point[i] - self.center[i]))
+        self.rotate(build!(|i| point[i] - self.center[i]))
     }
 }
 
@@ -95,7 +95,7 @@ pub fn frames(track: &Track, physical_radius: Option<f64>) -> Vec<GateFrame<f32>
             let offset = |k: usize| rotation.transpose() * (at(i + k) - at(i));
             GateFrame {
                 center: at(i).into(),
-                axes: std::array::from_fn(|k| rotation.column(k).into_owned().into()),
+                axes: build!(|k| rotation.column(k).into_owned().into()),
                 radius,
                 next: [offset(1).into(), offset(2).into()],
             }

@@ -1,7 +1,7 @@
 //! Gaussian noise on what the policy sees and on what it commands, while training.
 
 use crate::check::{Check, Invalid};
-use crate::lane::Lane32;
+use crate::lane::{Lane32, build, each};
 use crate::rng::{Philox, Stream, coarse_normals};
 use serde::{Deserialize, Serialize};
 
@@ -52,18 +52,22 @@ pub struct Noise<L> {
     pub voltage: L,
 }
 
+#[inline(always)]
+fn scaled<L: Lane32, const N: usize>(x: [L; N], sd: f64) -> [L; N] {
+    each!(x, |x| x * L::of(sd))
+}
+
 /// The estimate's error in `environments` at `step`.
 #[inline(always)]
 pub fn of_observation<L: Lane32>(c: &NoiseConfig, rng: &Philox, environments: L::Bits, step: u32) -> Noise<L> {
-    let w: [[L::Bits; 4]; 2] = std::array::from_fn(|i| rng.block(Stream::Noise, environments, step, i as u32));
+    let w: [[L::Bits; 4]; 2] = build!(|i| rng.block(Stream::Noise, environments, step, i as u32));
     // 13 numbers from 7 words.
-    let n: [(L, L); 7] = std::array::from_fn(|i| coarse_normals(w[i / 4][i % 4]));
-    let three = |a: L, b: L, c: L, sd: f64| [a, b, c].map(|x| x * L::of(sd));
+    let n: [(L, L); 7] = build!(|i| coarse_normals(w[i / 4][i % 4]));
     Noise {
-        position: three(n[0].0, n[0].1, n[1].0, c.position_m),
-        velocity: three(n[1].1, n[2].0, n[2].1, c.velocity_m_s),
-        rate: three(n[3].0, n[3].1, n[4].0, c.rate_rad_s),
-        attitude: three(n[4].1, n[5].0, n[5].1, c.attitude_rad),
+        position: scaled([n[0].0, n[0].1, n[1].0], c.position_m),
+        velocity: scaled([n[1].1, n[2].0, n[2].1], c.velocity_m_s),
+        rate: scaled([n[3].0, n[3].1, n[4].0], c.rate_rad_s),
+        attitude: scaled([n[4].1, n[5].0, n[5].1], c.attitude_rad),
         voltage: n[6].0 * L::of(c.voltage_v),
     }
 }
@@ -73,5 +77,5 @@ pub fn of_observation<L: Lane32>(c: &NoiseConfig, rng: &Philox, environments: L:
 pub fn of_action<L: Lane32>(c: &NoiseConfig, rng: &Philox, environments: L::Bits, step: u32) -> [L; 4] {
     let w = rng.block(Stream::Noise, environments, step, 2);
     let ((a, b), (c0, d)) = (coarse_normals::<L>(w[0]), coarse_normals::<L>(w[1]));
-    [a, b, c0, d].map(|x| x * L::of(c.action))
+    scaled([a, b, c0, d], c.action)
 }

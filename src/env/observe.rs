@@ -6,7 +6,7 @@
 use super::Block;
 use super::noise::Noise;
 use crate::dynamics::attitude::{body_axes, cross};
-use crate::lane::Lane;
+use crate::lane::{Lane, build, each};
 
 /// Consecutive entries of the observation that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -60,6 +60,11 @@ pub const OBSERVATIONS: usize = {
     n
 };
 
+#[inline(always)]
+fn add<L: Lane>(a: [L; 3], b: [L; 3]) -> [L; 3] {
+    build!(|i| a[i] + b[i])
+}
+
 /// The observation of each lane of `block`, with `noise` on what an estimator would have to estimate.
 #[inline(always)]
 pub fn observe<L: Lane>(block: &Block<L>, noise: Option<&Noise<L>>) -> [L; OBSERVATIONS] {
@@ -67,18 +72,17 @@ pub fn observe<L: Lane>(block: &Block<L>, noise: Option<&Noise<L>>) -> [L; OBSER
     let mut position = block.in_gate;
     let mut velocity = gate.rotate(block.state.velocity);
     let axes = body_axes(block.state.attitude);
-    let mut attitude = axes.map(|axis| gate.rotate(axis));
+    let mut attitude = each!(axes, |axis| gate.rotate(axis));
     let body_rates = block.state.body_rates(&block.parameters);
-    let mut rates: [L; 3] = std::array::from_fn(|i| {
+    let mut rates: [L; 3] = build!(|i| {
         attitude[0][i].mul_add(body_rates[0], attitude[1][i].mul_add(body_rates[1], attitude[2][i] * body_rates[2]))
     });
     let mut voltage = block.state.voltage;
     if let Some(noise) = noise {
-        let add = |v: [L; 3], n: [L; 3]| -> [L; 3] { std::array::from_fn(|i| v[i] + n[i]) };
         position = add(position, noise.position);
         velocity = add(velocity, noise.velocity);
         rates = add(rates, noise.rate);
-        attitude = attitude.map(|axis| add(axis, cross(noise.attitude, axis)));
+        attitude = each!(attitude, |axis| add(axis, cross(noise.attitude, axis)));
         voltage = voltage + noise.voltage;
     }
     let attitude = attitude.as_flattened();

@@ -9,19 +9,25 @@ use crate::lane::{Lane, Mask};
 /// Causes of termination, in the order in which they are looked at; the first that holds is logged.
 pub const CAUSES: [&str; 6] = ["non_finite", "missed_gate", "left_volume", "altitude", "battery", "gate_timeout"];
 
+#[inline(always)]
+fn outside<L: Lane>(x: L, low: f64, high: f64) -> L::Mask {
+    x.lt(L::of(low)) | L::of(high).lt(x)
+}
+
 /// The causes' lanes as bits, each lane at most once.
 #[inline(always)]
 pub fn causes<L: Lane>(race: &Race, block: &Block<L>, missed: L::Mask, timed_out: L::Mask) -> [u32; CAUSES.len()] {
     let [x, y, z] = block.state.position;
     let [low, high] = race.volume;
-    let outside = |v: L, i: usize| v.lt(L::of(low[i])) | L::of(high[i]).lt(v);
     // A number that is not finite makes this sum so.
-    let sum = block.state.velocity.iter().chain(&block.state.attitude).fold(x + y + z, |s, &v| s + v);
+    let [vx, vy, vz] = block.state.velocity;
+    let [qw, qx, qy, qz] = block.state.attitude;
+    let sum = (x + y + z) + (vx + vy + vz) + (qw + qx + qy + qz);
     let all = [
         (!sum.is_finite()).bits(),
         missed.bits(),
-        (outside(x, 0) | outside(y, 1)).bits(),
-        outside(z, 2).bits(),
+        (outside(x, low[0], high[0]) | outside(y, low[1], high[1])).bits(),
+        outside(z, low[2], high[2]).bits(),
         block.state.voltage.lt(L::of(race.empty_v)).bits(),
         timed_out.bits(),
     ];

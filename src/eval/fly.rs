@@ -4,7 +4,7 @@ use crate::dynamics::Factors;
 use crate::env::reset::{self, Place};
 use crate::env::terminate::CAUSES;
 use crate::env::{Block, Race, lanes};
-use crate::lane::{Kernel, LANES, Lane32, Level, Mask, dispatch};
+use crate::lane::{Kernel, LANES, Lane32, Level, Mask, build, dispatch, sum_of_squares};
 use crate::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use crate::policy::ACTIONS;
 use crate::rng::Stream;
@@ -103,7 +103,7 @@ impl Kernel for Fly<'_> {
     fn run<L: Lane32>(self) -> Flights {
         let Fly { race, network, place, first, agents, max_steps } = self;
         let mut out = Flights { flights: vec![Flight::default(); TILE_SAMPLES], trace: Vec::new() };
-        let mut blocks: [Block<L>; TILE_BLOCKS] = std::array::from_fn(|b| race.empty_block((first + b * LANES) as u32));
+        let mut blocks: [Block<L>; TILE_BLOCKS] = build!(|b| race.empty_block((first + b * LANES) as u32));
         // Bits of lanes still flying; padding lanes never start.
         let mut alive = [0u32; TILE_BLOCKS];
         for (b, block) in blocks.iter_mut().enumerate() {
@@ -130,8 +130,7 @@ impl Kernel for Fly<'_> {
             }
             network.forward_actor::<L>(&seen, &mut scratch, &mut mean);
             for (b, block) in blocks.iter_mut().enumerate() {
-                let action: [L; ACTIONS] =
-                    std::array::from_fn(|k| L::from_slice(&mean[k * TILE_SAMPLES + b * LANES..]).tanh());
+                let action: [L; ACTIONS] = build!(|k| L::from_slice(&mean[k * TILE_SAMPLES + b * LANES..]).tanh());
                 if first == 0 && b == 0 && alive[0] & 1 == 1 {
                     out.trace.push(moment(block, action, f64::from(step) * race.dt));
                 }
@@ -140,7 +139,7 @@ impl Kernel for Fly<'_> {
                     judge(flights, alive[b], action, block.history[0], step);
                 }
                 let outcome = block.step(race, action);
-                let speed = block.state.velocity.iter().fold(L::zero(), |s, &v| v.mul_add(v, s)).sqrt();
+                let speed = sum_of_squares(block.state.velocity).sqrt();
                 for lane in lanes(alive[b]) {
                     let flight = &mut flights[lane];
                     flight.steps = step + 1;

@@ -112,17 +112,17 @@ impl<L: Lane, F: Finish<L>> Product<'_, L, F> {
     unsafe fn tile<const R: usize, const C: usize, const SUMS: bool>(&mut self, row: usize, block: usize) {
         // SAFETY: rows row..row + R and blocks block..block + C are inside the matrices; the row of sums is not read from A.
         unsafe {
-            let mut tile: [[L; C]; R] = build(|i| build(|j| self.finish.start(row + i, block + j)));
+            let mut tile: [[L; C]; R] = build!(|i| build!(|j| self.finish.start(row + i, block + j)));
             let mut a = self.a.data.as_ptr().wrapping_add(row * self.a.row);
             let mut b = self.b.add(block * LANES);
             for _ in 0..self.inner {
-                let right: [L; C] = build(|j| L::load(b.add(j * LANES)));
+                let right: [L; C] = build!(|j| L::load(b.add(j * LANES)));
                 for (i, sums) in tile.iter_mut().enumerate() {
                     if SUMS && i + 1 == R {
-                        *sums = build(|j| sums[j] + right[j]);
+                        *sums = build!(|j| sums[j] + right[j]);
                     } else {
                         let left = L::splat(*a.add(i * self.a.row));
-                        *sums = build(|j| left.mul_add(right[j], sums[j]));
+                        *sums = build!(|j| left.mul_add(right[j], sums[j]));
                     }
                 }
                 a = a.wrapping_add(self.a.column);

@@ -90,9 +90,9 @@ fn head<L: Lane>(w: &[L::Elem], b: &[L::Elem], samples: usize, pitch: usize, h: 
         #[inline(always)]
         || {
             for (k, (w, b)) in w.chunks_exact(HIDDEN).zip(b).enumerate() {
-                let w: [L; HIDDEN / LANES] = build(|j| L::from_slice(&w[j * LANES..]));
+                let w: [L; HIDDEN / LANES] = build!(|j| L::from_slice(&w[j * LANES..]));
                 for (block, h) in h[..samples * HIDDEN].chunks_exact(LANES * HIDDEN).enumerate() {
-                    let products = build(|i| {
+                    let products = build!(|i| {
                         let h = |j: usize| L::from_slice(&h[i * HIDDEN + j * LANES..]);
                         (1..HIDDEN / LANES).fold(w[0] * h(0), |sum, j| w[j].mul_add(h(j), sum))
                     });
@@ -108,7 +108,7 @@ fn head<L: Lane>(w: &[L::Elem], b: &[L::Elem], samples: usize, pitch: usize, h: 
 pub fn turn<L: Lane>(shape: &Shape, p: &[L::Elem], turned: &mut [L::Elem]) {
     let p = &p[shape.second()];
     for (r, c) in (0..HIDDEN * HIDDEN / LANES / LANES).map(|i| (i / 4 * LANES, i % 4 * LANES)) {
-        let mut block = build(|i| L::from_slice(&p[(r + i) * HIDDEN + c..]));
+        let mut block = build!(|i| L::from_slice(&p[(r + i) * HIDDEN + c..]));
         L::transpose(&mut block);
         (0..LANES).for_each(|i| block[i].write(&mut turned[(c + i) * HIDDEN + r..]));
     }

@@ -138,10 +138,10 @@ fn differentiate_loss<L: Lane>(
     for (b, &row) in rows.iter().enumerate() {
         let (at, column) = (row as usize * LANES, |k: usize| k * PITCH + b * LANES);
         let samples = Samples {
-            mean: build(|k| L::from_slice(&mean[column(k)..])),
+            mean: build!(|k| L::from_slice(&mean[column(k)..])),
             log_std,
             value: L::from_slice(&value[column(0)..]),
-            z: build(|k| L::from_slice(&batch.z[at * ACTIONS + k * LANES..])),
+            z: build!(|k| L::from_slice(&batch.z[at * ACTIONS + k * LANES..])),
             old_log_prob: L::from_slice(&batch.log_prob[at..]),
             advantage: L::from_slice(&batch.advantages[at..]),
             ret: L::from_slice(&batch.returns[at..]),
@@ -154,6 +154,6 @@ fn differentiate_loss<L: Lane>(
         }
         answer.d_value.write(&mut value[column(0)..]);
         sums.value = sums.value + answer.d_value;
-        sums.terms = build(|k| sums.terms[k] + answer.terms[k]);
+        sums.terms = build!(|k| sums.terms[k] + answer.terms[k]);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! total = surrogate - entropy_coefficient entropy + magnitude_coefficient E|tanh(mean)|^2 + value_coefficient value
 
-use crate::lane::{Lane, build};
+use crate::lane::{Lane, build, each, sum_of_squares};
 use crate::policy::{ACTIONS, log_prob_of};
 
 /// Weights of the loss's terms.
@@ -45,8 +45,8 @@ pub const TERMS: [&str; 5] = ["surrogate", "value", "magnitude", "approx_kl", "c
 #[inline(always)]
 pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
     let one = L::one();
-    let inverse = s.log_std.map(|x| (-x).exp());
-    let noise: [L; ACTIONS] = build(|k| (s.z[k] - s.mean[k]) * inverse[k]);
+    let inverse = each!(s.log_std, |x| (-x).exp());
+    let noise: [L; ACTIONS] = build!(|k| (s.z[k] - s.mean[k]) * inverse[k]);
     let log_ratio = log_prob_of(noise, s.log_std) - s.old_log_prob;
     let ratio = log_ratio.exp();
     let free = ratio * s.advantage;
@@ -54,16 +54,16 @@ pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
     // The gradient flows where the free product is the smaller.
     let d_log_prob = L::select(free.le(clipped), -free, L::zero()) * share;
 
-    let squashed = s.mean.map(L::tanh);
-    let magnitude = squashed.iter().fold(L::zero(), |sum, &t| t.mul_add(t, sum));
+    let squashed = each!(s.mean, |x| x.tanh());
+    let magnitude = sum_of_squares(squashed);
     let pull = share * L::of(2.0 * w.magnitude);
     let error = s.value - s.ret;
     Answer {
-        d_mean: build(|k| {
+        d_mean: build!(|k| {
             let slope = (-squashed[k]).mul_add(squashed[k], one);
             (d_log_prob * noise[k]).mul_add(inverse[k], squashed[k] * slope * pull)
         }),
-        d_log_std: build(|k| d_log_prob * noise[k].mul_add(noise[k], -one)),
+        d_log_std: build!(|k| d_log_prob * noise[k].mul_add(noise[k], -one)),
         d_value: error * share * L::of(w.value),
         terms: [
             -free.min(clipped),

@@ -2,7 +2,7 @@
 //! resets included, while its state and activations stay in cache.
 
 use super::{Environment, Step};
-use crate::lane::{Bits, Kernel, LANES, Lane32, Level, dispatch};
+use crate::lane::{Bits, Kernel, LANES, Lane32, Level, build, dispatch, each};
 use crate::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use crate::policy;
 use crate::rng::{Philox, Stream, normals};
@@ -168,11 +168,11 @@ impl<E: Environment> Kernel for Collect<'_, E> {
                     let from = &seen[column(k)..column(k) + LANES];
                     out.observations[(row * n + k) * LANES..][..LANES].copy_from_slice(from);
                 }
-                let environments = L::Bits::from_array(std::array::from_fn(|i| tile.first + (b * LANES + i) as u32));
+                let environments = L::Bits::from_array(build!(|i| tile.first + (b * LANES + i) as u32));
                 let w = rng.block(Stream::Action, environments, step, 0);
                 let ((n0, n1), (n2, n3)) = (normals::<L>(w[0], w[1]), normals::<L>(w[2], w[3]));
-                let mean: [L; 4] = std::array::from_fn(|k| L::from_slice(&mean[column(k)..]));
-                let (z, log_prob) = policy::sample(mean, log_std.map(L::splat), [n0, n1, n2, n3]);
+                let mean: [L; 4] = build!(|k| L::from_slice(&mean[column(k)..]));
+                let (z, log_prob) = policy::sample(mean, each!(log_std, |s| L::splat(s)), [n0, n1, n2, n3]);
                 for k in 0..policy::ACTIONS {
                     z[k].write(&mut out.z[(row * policy::ACTIONS + k) * LANES..]);
                 }
@@ -180,7 +180,8 @@ impl<E: Environment> Kernel for Collect<'_, E> {
                 log_prob.write(&mut out.log_prob[lanes.clone()]);
                 out.values[lanes.clone()].copy_from_slice(&value[b * LANES..][..LANES]);
 
-                let Step { reward, terminated, truncated } = environment.step(block, z.map(L::tanh), &mut tile.tally);
+                let Step { reward, terminated, truncated } =
+                    environment.step(block, each!(z, |z| z.tanh()), &mut tile.tally);
                 reward.write(&mut out.rewards[lanes]);
                 out.terminated[row] = terminated;
                 out.truncated[row] = truncated;
@@ -191,7 +192,7 @@ impl<E: Environment> Kernel for Collect<'_, E> {
                 for (b, block) in blocks.iter().enumerate() {
                     environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
                 }
-                network.forward::<L>(&seen, &mut scratch, &mut mean, &mut value);
+                network.forward_critic::<L>(&seen, &mut scratch, &mut value);
                 out.final_values[t * TILE_SAMPLES..(t + 1) * TILE_SAMPLES].copy_from_slice(&value);
             }
             for (b, block) in blocks.iter_mut().enumerate() {
@@ -203,6 +204,6 @@ impl<E: Environment> Kernel for Collect<'_, E> {
             environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
             tile.saved[b] = environment.save(block);
         }
-        network.forward::<L>(&seen, &mut scratch, &mut mean, out.last_values);
+        network.forward_critic::<L>(&seen, &mut scratch, out.last_values);
     }
 }
