@@ -162,7 +162,7 @@ impl Kernel for Fly<'_> {
                 let step = Environment::step(race, &mut block, action, &mut tally);
                 race.reset(&mut block, step.terminated | step.truncated, &mut tally);
             }
-            *saved = race.save(&block);
+            *saved = race.save(&block, &mut tally);
         }
         black_box(&tally);
     }

@@ -21,7 +21,6 @@ use crate::vehicle::randomize::RandomizeConfig;
 use gates::GateFrame;
 use nalgebra::Vector3;
 use noise::NoiseConfig;
-use observe::OBSERVATIONS;
 use reset::{ResetConfig, Start};
 use reward::{RewardConfig, TERMS};
 use serde::{Deserialize, Serialize};
@@ -106,6 +105,8 @@ pub struct Block<R> {
     pub gate_clock: R,
     /// Reward gathered in the episode.
     pub gathered: R,
+    /// Sums of the reward's terms since they were last cleared.
+    pub terms: [R; TERMS.len()],
     /// Index of the target gate, and gates passed in the episode.
     pub target: [u32; LANES],
     pub passed: [u32; LANES],
@@ -151,7 +152,7 @@ impl Race {
             .collect();
         Race {
             config: config.clone(),
-            start: track.start.clone(),
+            start: track.start,
             gates,
             lap,
             volume: [track.volume.min_m, track.volume.max_m],
@@ -187,6 +188,7 @@ impl Race {
             clock: L::zero(),
             gate_clock: L::zero(),
             gathered: L::zero(),
+            terms: [L::zero(); TERMS.len()],
             target: [0; LANES],
             passed: [0; LANES],
             first,
@@ -211,6 +213,7 @@ impl<R: Copy> Block<R> {
             clock: f(self.clock),
             gate_clock: f(self.gate_clock),
             gathered: f(self.gathered),
+            terms: self.terms.map(&mut f),
             target: self.target,
             passed: self.passed,
             first: self.first,
@@ -226,16 +229,16 @@ impl<L: Lane32> Block<L> {
         L::Bits::from_array(build!(|i| self.first + i as u32))
     }
 
-    /// The observation of each lane.
+    /// Writes the observation of the 16 lanes, entry `k` to `out[k * stride..]`.
     #[inline(always)]
-    pub fn observe(&self, race: &Race) -> [L; OBSERVATIONS] {
+    pub fn observe(&self, race: &Race, out: &mut [f32], stride: usize) {
         let config = &race.config.noise;
         // No closure: a closure is compiled on its own, without the block's instructions.
         if race.noisy {
             let noise = noise::of_observation(config, &race.rng, self.environments(), self.step);
-            observe::observe(self, Some(&noise))
+            observe::observe(self, Some(&noise), out, stride);
         } else {
-            observe::observe(self, None)
+            observe::observe(self, None, out, stride);
         }
     }
 
@@ -276,6 +279,7 @@ impl<L: Lane32> Block<L> {
             reward = reward + term;
         }
         self.gathered = self.gathered + reward;
+        self.terms = build!(|i| self.terms[i] + terms[i]);
         self.history = [action, self.history[0], self.history[1]];
         self.step += 1;
 
@@ -296,9 +300,7 @@ impl<L: Lane32> Block<L> {
         self.state.set_lane(lane, &start.state.map(|x| x as f32));
         self.parameters.set_lane(lane, &start.parameters.map(|x| x as f32));
         for action in &mut self.history {
-            for i in 0..4 {
-                action[i].set(lane, start.state.command[i] as f32);
-            }
+            action.iter_mut().zip(start.state.command).for_each(|(x, u)| x.set(lane, u as f32));
         }
         for count in [&mut self.clock, &mut self.gate_clock, &mut self.gathered] {
             count.set(lane, 0.0);
@@ -314,9 +316,7 @@ impl<L: Lane32> Block<L> {
         self.target[lane] = index as u32;
         self.gate.set_lane(lane, gate);
         let position = gate.locate(self.state.position.map(|x| x.get(lane)));
-        for i in 0..3 {
-            self.in_gate[i].set(lane, position[i]);
-        }
+        self.in_gate.iter_mut().zip(position).for_each(|(x, p)| x.set(lane, p));
     }
 }
 

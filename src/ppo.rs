@@ -38,7 +38,8 @@ pub trait Environment: Sync {
     /// Fresh episodes in environments `first..first + 16`.
     fn start(&self, first: u32) -> Self::Saved;
     fn load<L: Lane32>(&self, saved: &Self::Saved) -> Self::Block<L>;
-    fn save<L: Lane32>(&self, block: &Self::Block<L>) -> Self::Saved;
+    /// The inverse of [`Environment::load`]; hands what was still being summed up to `tally`.
+    fn save<L: Lane32>(&self, block: &Self::Block<L>, tally: &mut Self::Tally) -> Self::Saved;
     /// Writes feature `k` of the 16 lanes to `out[k * stride..k * stride + 16]`.
     fn observe<L: Lane32>(&self, block: &Self::Block<L>, out: &mut [f32], stride: usize);
     /// One step under the squashed action. Ended episodes stay as they ended until [`Environment::reset`].

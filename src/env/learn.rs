@@ -2,9 +2,10 @@
 
 use super::observe::OBSERVATIONS;
 use super::reset::{self, Place};
+use super::reward::TERMS;
 use super::tally::Tally;
 use super::{Block, Race, lanes};
-use crate::lane::{LANES, Lane, Lane32, Portable};
+use crate::lane::{LANES, Lane, Lane32, Portable, Real};
 use crate::ppo::{Environment, Step};
 use crate::rng::Stream;
 
@@ -34,28 +35,28 @@ impl Environment for Race {
     }
 
     #[inline(always)]
-    fn save<L: Lane32>(&self, block: &Block<L>) -> Self::Saved {
-        block.map(|x| Portable(x.to_array()))
+    fn save<L: Lane32>(&self, block: &Block<L>, tally: &mut Tally) -> Self::Saved {
+        for (sum, term) in tally.terms.iter_mut().zip(block.terms) {
+            *sum += f64::from(term.sum());
+        }
+        let mut saved = block.map(|x| Portable(x.to_array()));
+        saved.terms = [Portable::of(0.0); TERMS.len()];
+        saved
     }
 
     #[inline(always)]
     fn observe<L: Lane32>(&self, block: &Block<L>, out: &mut [f32], stride: usize) {
-        for (k, feature) in Block::observe(block, self).into_iter().enumerate() {
-            feature.write(&mut out[k * stride..]);
-        }
+        Block::observe(block, self, out, stride);
     }
 
     #[inline(always)]
     fn step<L: Lane32>(&self, block: &mut Block<L>, action: [L; 4], tally: &mut Tally) -> Step<L> {
         let outcome = Block::step(block, self, action);
         tally.steps += LANES as f64;
-        for (sum, term) in tally.terms.iter_mut().zip(outcome.terms) {
-            *sum += f64::from(term.sum());
-        }
         tally.gates += f64::from(outcome.passed.count_ones());
         for lane in lanes(outcome.passed) {
             let passed = block.passed[lane];
-            tally.laps += f64::from(u8::from(passed > 1 && (passed - 1) % self.gates.len() as u32 == 0));
+            tally.laps += f64::from(u8::from(passed > 1 && (passed - 1).is_multiple_of(self.gates.len() as u32)));
         }
         for (count, lanes) in tally.causes.iter_mut().zip(outcome.causes) {
             *count += f64::from(lanes.count_ones());

@@ -65,9 +65,25 @@ fn add<L: Lane>(a: [L; 3], b: [L; 3]) -> [L; 3] {
     build!(|i| a[i] + b[i])
 }
 
-/// The observation of each lane of `block`, with `noise` on what an estimator would have to estimate.
+/// (offset, scale) of each entry.
+const SCALES: [(f32, f32); OBSERVATIONS] = {
+    let mut all = [(0.0, 0.0); OBSERVATIONS];
+    let (mut k, mut g) = (0, 0);
+    while g < LAYOUT.len() {
+        let end = k + LAYOUT[g].entries.len();
+        while k < end {
+            all[k] = (LAYOUT[g].offset as f32, LAYOUT[g].scale as f32);
+            k += 1;
+        }
+        g += 1;
+    }
+    all
+};
+
+/// Writes the observation of the 16 lanes of `block`, entry `k` to `out[k * stride..]`, with `noise` on what an estimator
+/// would have to estimate.
 #[inline(always)]
-pub fn observe<L: Lane>(block: &Block<L>, noise: Option<&Noise<L>>) -> [L; OBSERVATIONS] {
+pub fn observe<L: Lane<Elem = f32>>(block: &Block<L>, noise: Option<&Noise<L>>, out: &mut [f32], stride: usize) {
     let gate = &block.gate;
     let mut position = block.in_gate;
     let mut velocity = gate.rotate(block.state.velocity);
@@ -99,15 +115,13 @@ pub fn observe<L: Lane>(block: &Block<L>, noise: Option<&Noise<L>>) -> [L; OBSER
         &gate.next[0],
         &gate.next[1],
     ];
-    let mut out = [L::zero(); OBSERVATIONS];
     let mut k = 0;
-    for (group, values) in LAYOUT.iter().zip(groups) {
-        debug_assert_eq!(group.entries.len(), values.len());
+    for values in groups {
         for &value in values {
-            let value = if group.offset == 0.0 { value } else { value - L::of(group.offset) };
-            out[k] = if group.scale == 1.0 { value } else { value * L::of(group.scale) };
+            let (offset, scale) = SCALES[k];
+            ((value - L::splat(offset)) * L::splat(scale)).write(&mut out[k * stride..]);
             k += 1;
         }
     }
-    out
+    debug_assert_eq!(k, OBSERVATIONS);
 }

@@ -124,9 +124,7 @@ impl Kernel for Fly<'_> {
                 break;
             }
             for (b, block) in blocks.iter().enumerate() {
-                for (k, feature) in block.observe(race).into_iter().enumerate() {
-                    feature.write(&mut seen[k * TILE_SAMPLES + b * LANES..]);
-                }
+                block.observe(race, &mut seen[b * LANES..], TILE_SAMPLES);
             }
             network.forward_actor::<L>(&seen, &mut scratch, &mut mean);
             for (b, block) in blocks.iter_mut().enumerate() {

@@ -173,8 +173,8 @@ impl<E: Environment> Kernel for Collect<'_, E> {
                 let ((n0, n1), (n2, n3)) = (normals::<L>(w[0], w[1]), normals::<L>(w[2], w[3]));
                 let mean: [L; 4] = build!(|k| L::from_slice(&mean[column(k)..]));
                 let (z, log_prob) = policy::sample(mean, each!(log_std, |s| L::splat(s)), [n0, n1, n2, n3]);
-                for k in 0..policy::ACTIONS {
-                    z[k].write(&mut out.z[(row * policy::ACTIONS + k) * LANES..]);
+                for (k, z) in z.iter().enumerate() {
+                    z.write(&mut out.z[(row * policy::ACTIONS + k) * LANES..]);
                 }
                 let lanes = row * LANES..(row + 1) * LANES;
                 log_prob.write(&mut out.log_prob[lanes.clone()]);
@@ -202,7 +202,7 @@ impl<E: Environment> Kernel for Collect<'_, E> {
         }
         for (b, block) in blocks.iter().enumerate() {
             environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
-            tile.saved[b] = environment.save(block);
+            tile.saved[b] = environment.save(block, &mut tile.tally);
         }
         network.forward_critic::<L>(&seen, &mut scratch, out.last_values);
     }
