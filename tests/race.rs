@@ -193,9 +193,7 @@ fn the_observation_is_its_layout() {
     let of = |name: &str| {
         let at: usize = LAYOUT.iter().take_while(|g| g.name != name).map(|g| g.entries.len()).sum();
         let group = LAYOUT.iter().find(|g| g.name == name).unwrap();
-        (0..group.entries.len())
-            .map(|k| f64::from(seen[at + k][7]) / group.scale + group.offset)
-            .collect::<Vec<_>>()
+        (0..group.entries.len()).map(|k| f64::from(seen[at + k][7]) / group.scale + group.offset).collect::<Vec<_>>()
     };
     let near = |a: Vec<f64>, b: &[f64]| {
         assert!(a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-5), "{a:?} {b:?}")
