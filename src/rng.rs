@@ -153,7 +153,7 @@ mod tests {
         #[inline(always)]
         fn run<L: Lane32>(self) -> [f64; 4] {
             let rng = Philox::new(7);
-            let ids = L::Bits::from_array(build!(|i| i as u32));
+            let ids = L::Bits::from_array(std::array::from_fn(|i| i as u32));
             let scalar = rng.words([2u32, 5, 3, Stream::Noise as u32]);
             assert_eq!(rng.block(Stream::Noise, ids, 3, 2).map(|w| w.to_array()[5]), scalar);
             let mut sums = [0.0; 4];

@@ -117,6 +117,7 @@ pub fn turn<L: Lane>(shape: &Shape, p: &[L::Elem], turned: &mut [L::Elem]) {
 /// Adds the gradient of a tile to `g`, but for the head's biases: `x` and `h` as [`forward`] left them, `dy`
 /// `[outputs][pitch]` the derivative by the outputs. Destroys `h`.
 #[inline(always)]
+#[allow(clippy::too_many_arguments)] // the operands of one formula
 pub fn backward<L: Lane>(
     shape: &Shape,
     p: &[L::Elem],

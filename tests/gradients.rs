@@ -1,0 +1,86 @@
+//! Every hand-written derivative against central differences in double precision, term by term of the loss.
+
+use racer::lane::{LANES, Portable};
+use racer::nn::Network;
+use racer::ppo::loss::Weights;
+use racer::ppo::update::{Batch, Updater};
+use racer::rng::{Philox, Stream};
+
+const ROWS: usize = 5;
+const INPUTS: usize = 11;
+
+/// A network with weights of ordinary size everywhere, and a batch on which some ratios are clipped and some are not.
+fn example() -> (Network<f64>, [Vec<f64>; 5]) {
+    let mut rng = Philox::new(5).sequence(Stream::Weights, 0, 0);
+    let mut network = Network::<f64>::zeros(INPUTS);
+    for shape in [network.actor.clone(), network.critic.clone()] {
+        for index in 0..3 {
+            let mut layer = network.layer(&shape, index);
+            layer.weights.iter_mut().chain(&mut layer.biases).for_each(|w| *w = 0.2 * rng.normal());
+            network.set_layer(&shape, index, &layer);
+        }
+    }
+    let log_std = network.log_std_range();
+    network.parameters[log_std].copy_from_slice(&[-0.5, -0.2, -0.9, 0.1]);
+    let mut normals = |n: usize, mean: f64, sd: f64| (0..n).map(|_| mean + sd * rng.normal()).collect::<Vec<_>>();
+    let rows = ROWS * LANES;
+    let data = [
+        normals(rows * INPUTS, 0.0, 1.0),
+        normals(rows * 4, 0.0, 0.7),
+        normals(rows, -4.0, 1.0),
+        normals(rows, 0.0, 1.0),
+        normals(rows, 1.0, 1.0),
+    ];
+    (network, data)
+}
+
+fn check(name: &str, weights: Weights) {
+    let (mut network, [observations, z, log_prob, advantages, returns]) = example();
+    let batch =
+        Batch { observations: &observations, z: &z, log_prob: &log_prob, advantages: &advantages, returns: &returns };
+    let rows: Vec<u32> = (0..ROWS as u32).collect();
+    let mut updater = Updater::new(&network);
+    let losses = updater.differentiate::<Portable<f64>>(&network, &batch, &rows, &weights);
+    assert!((0.05..0.95).contains(&losses.clip_fraction), "{name}: {losses:?}");
+    let gradient = updater.gradient.to_vec();
+    let largest = gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
+    assert!(largest > 1e-4, "{name} has no gradient");
+    let step = 1e-6;
+    // All of log_std at the end, and a third of everything else.
+    let all = network.parameters.len();
+    for i in (0..all - 4).step_by(3).chain(all - 4..all) {
+        let here = network.parameters[i];
+        let mut at = |x: f64| {
+            network.parameters[i] = x;
+            updater.differentiate::<Portable<f64>>(&network, &batch, &rows, &weights).total
+        };
+        let difference = (at(here + step) - at(here - step)) / (2.0 * step);
+        network.parameters[i] = here;
+        // Padding between layers is part of the vector but of no output; both sides are zero there.
+        let error = (gradient[i] - difference).abs() / largest;
+        assert!(error < 1e-6, "{name}: parameter {i}: {} by hand, {difference} by differences", gradient[i]);
+    }
+}
+
+const NONE: Weights = Weights { clip: 0.2, entropy: 0.0, magnitude: 0.0, value: 0.0 };
+
+#[test]
+fn surrogate() {
+    check("surrogate", NONE);
+}
+
+#[test]
+fn value() {
+    check("value", Weights { value: 0.7, ..NONE });
+}
+
+#[test]
+fn entropy_and_magnitude() {
+    check("entropy", Weights { entropy: 0.3, ..NONE });
+    check("magnitude", Weights { magnitude: 0.9, ..NONE });
+}
+
+#[test]
+fn all_terms() {
+    check("all", Weights { clip: 0.3, entropy: 0.01, magnitude: 0.15, value: 0.5 });
+}
