@@ -1,10 +1,8 @@
 //! Settings of the optimiser and of the training budget.
 
 use crate::check::{Check, Invalid};
+use crate::nn::TILE_SAMPLES as TILE;
 use serde::{Deserialize, Serialize};
-
-/// Samples and environments are handled in tiles of this many: four blocks of 16 lanes.
-pub const TILE: usize = 64;
 
 /// How long to train. Exactly one of `minutes` and `steps` is set.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,6 +16,18 @@ pub struct BudgetConfig {
     pub steps: Option<u64>,
     /// Policies kept, evenly over the budget; the last is the final one. All are evaluated afterwards and the best is chosen.
     pub snapshots: usize,
+}
+
+impl BudgetConfig {
+    /// Share of the budget that `steps` environment steps in `seconds` have used, 0 to 1 and beyond. A budget of neither
+    /// minutes nor steps, which `check` refuses, is used up from the start.
+    pub fn share(&self, steps: u64, seconds: f64) -> f64 {
+        match (self.steps, self.minutes) {
+            (Some(total), _) => steps as f64 / total as f64,
+            (None, Some(minutes)) => seconds / (60.0 * minutes),
+            (None, None) => 1.0,
+        }
+    }
 }
 
 impl Check for BudgetConfig {

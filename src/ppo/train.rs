@@ -30,7 +30,6 @@ pub struct Iteration<'a, T> {
     /// Standard deviation of the exploration noise, mean over the commands.
     pub std: f64,
     pub tally: &'a T,
-    pub network: &'a Network<f32>,
 }
 
 /// Whether to go on.
@@ -192,18 +191,14 @@ pub fn train<E: Environment>(
     let mut training = Training::new(level, environment, config, seed);
     let started = Instant::now();
     let (mut snapshots, mut steps) = (Vec::new(), 0u64);
-    let share_of = |steps: u64, seconds: f64| match budget.steps {
-        Some(total) => steps as f64 / total as f64,
-        None => seconds / (60.0 * budget.minutes.unwrap_or(5.0)),
-    };
     loop {
-        let share = share_of(steps, started.elapsed().as_secs_f64());
+        let share = budget.share(steps, started.elapsed().as_secs_f64());
         let (losses, explained_variance, learning_rate) = training.iterate(share);
         steps += training.batch() as u64;
         let mut tally = E::Tally::default();
         training.tiles.iter().for_each(|tile| tally.merge(&tile.tally));
         let seconds = started.elapsed().as_secs_f64();
-        let share = share_of(steps, seconds);
+        let share = budget.share(steps, seconds);
         let flow = observer.iteration(&Iteration {
             index: training.iterations,
             steps,
@@ -215,7 +210,6 @@ pub fn train<E: Environment>(
             explained_variance,
             std: training.network.log_std().iter().map(|s| s.exp() as f64).sum::<f64>() / 4.0,
             tally: &tally,
-            network: &training.network,
         });
         let done = share >= 1.0 || flow == Flow::Stop;
         if done || share * budget.snapshots as f64 >= (snapshots.len() + 1) as f64 {
