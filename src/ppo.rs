@@ -2,6 +2,7 @@
 //!
 //! Knows nothing of racing: it sees an [`Environment`], and reports to an [`train::Observer`].
 
+mod awake;
 mod chunk;
 pub mod config;
 pub mod gae;

@@ -86,11 +86,11 @@ fn values_out_of_range_name_line_and_range() {
 fn batches_that_do_not_divide_name_the_nearest_that_do() {
     refuses("[ppo]\nenvironments = 100\n", &["mine.toml:2", "multiple of 64", "64 and 128"]);
     refuses("[ppo]\nenvironments = 7\n", &["use 64"]);
-    refuses("[ppo]\nminibatches = 15\n", &["mine.toml:2", "ppo.minibatches", "131072 samples", "8 and 16"]);
+    refuses("[ppo]\nminibatches = 15\n", &["mine.toml:2", "ppo.minibatches", "32768 samples", "8 and 16"]);
     // The key at fault is not in the file: the built-in configuration is named.
     refuses("[ppo]\nenvironments = 64\nrollout = 3\n", &["ppo.minibatches", "a2rl.toml (built in)", "3"]);
     refuses("[ppo]\nrollout = 4611686018427387904\n", &["ppo.rollout"]);
-    refuses("[ppo]\nminibatches = 9223372036854775807\n", &["ppo.minibatches", "2048"]);
+    refuses("[ppo]\nminibatches = 9223372036854775807\n", &["ppo.minibatches", "512"]);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The training loop: rollout, advantages, update, snapshot.
 
+use super::awake::awake;
 use super::config::{BudgetConfig, PpoConfig};
 use super::loss::Weights;
 use super::rollout::{Rollout, Tile, collect};
@@ -165,14 +166,19 @@ impl<'a, E: Environment> Training<'a, E> {
             advantages: &self.advantages,
             returns: &self.returns,
         };
-        let mut losses = Losses::default();
-        for epoch in 0..c.epochs {
-            let mut rng = self.rng.sequence(Stream::Shuffle, epoch as u32, self.iterations as u32);
-            rng.shuffle(&mut self.order);
-            for rows in self.order.chunks_exact(self.order.len() / c.minibatches) {
-                losses = self.updater.step(self.level, &mut self.network, &batch, rows, &hyper);
+        let (level, order, updater, network) = (self.level, &mut self.order, &mut self.updater, &mut self.network);
+        let shuffles =
+            (0..c.epochs).map(|epoch| self.rng.sequence(Stream::Shuffle, epoch as u32, self.iterations as u32));
+        let losses = awake(|| {
+            let mut losses = Losses::default();
+            for mut shuffle in shuffles {
+                shuffle.shuffle(order);
+                for rows in order.chunks_exact(order.len() / c.minibatches) {
+                    losses = updater.step(level, network, &batch, rows, &hyper);
+                }
             }
-        }
+            losses
+        });
         self.iterations += 1;
         (losses, explained, learning_rate)
     }

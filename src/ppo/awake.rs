@@ -1,0 +1,31 @@
+//! Keeping the pool's threads awake through many short parallel phases.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Runs `work` while the other threads of the current rayon pool look for its jobs without ever going to sleep: waking a
+/// thread takes as long as its half of a small minibatch.
+pub fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let Some(me) = rayon::current_thread_index() else { return work() };
+    let done = AtomicBool::new(false);
+    rayon::scope(|scope| {
+        // Each thread runs its own copy of a broadcast; this one's returns at once, or it could wait for itself.
+        scope.spawn_broadcast(|_, thread| {
+            while thread.index() != me && !done.load(Ordering::Acquire) {
+                if rayon::yield_now() != Some(rayon::Yield::Executed) {
+                    std::thread::yield_now();
+                }
+            }
+        });
+        let _end = End(&done);
+        work()
+    })
+}
+
+/// Lets the others go when `work` returns, and when it panics.
+struct End<'a>(&'a AtomicBool);
+
+impl Drop for End<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Release);
+    }
+}
