@@ -3,9 +3,14 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Runs `work` while the other threads of the current rayon pool look for its jobs without ever going to sleep: waking a
-/// thread takes as long as its half of a small minibatch.
+/// thread takes as long as its half of a small minibatch. With more threads than processors they would only be in each
+/// other's way, and nothing is done.
 pub fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let Some(me) = rayon::current_thread_index() else { return work() };
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    if rayon::current_num_threads() > processors {
+        return work();
+    }
     let done = AtomicBool::new(false);
     rayon::scope(|scope| {
         // Each thread runs its own copy of a broadcast; this one's returns at once, or it could wait for itself.
