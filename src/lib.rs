@@ -18,7 +18,8 @@ pub mod stats;
 pub mod dynamics;
 pub mod track;
 pub mod vehicle;
-// Batches of vehicles, networks.
+// Batches of vehicles, networks, flight logs.
+pub mod flight;
 pub mod nn;
 pub mod policy;
 pub mod sim;

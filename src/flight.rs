@@ -1,0 +1,73 @@
+//! Flight logs in racer's own terms: SI units, body frame front-left-up, world ENU with z up, one clock.
+//!
+//! A file is read into tables of named columns ([`table`]), and a mapping ([`mapping`]) says what the columns mean.
+
+pub mod table;
+
+/// Numbers over time: row i was measured at `time_s[i]`. NaN stands for what was not measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Stream<const N: usize> {
+    /// Seconds since the start of the log, in the order of the file.
+    pub time_s: Vec<f64>,
+    pub rows: Vec<[f64; N]>,
+}
+
+impl<const N: usize> Stream<N> {
+    pub fn len(&self) -> usize {
+        self.time_s.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.time_s.is_empty()
+    }
+
+    pub fn push(&mut self, time_s: f64, row: [f64; N]) {
+        self.time_s.push(time_s);
+        self.rows.push(row);
+    }
+
+    /// One number of every row.
+    pub fn column(&self, k: usize) -> Vec<f64> {
+        self.rows.iter().map(|row| row[k]).collect()
+    }
+}
+
+/// One flight. A stream that the file lacks is empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Log {
+    /// What it is called in messages: the path of the file.
+    pub name: String,
+    /// When the log starts, ns since 1970, or since the clock of the source started.
+    pub start_ns: u64,
+    /// Commands, as the controller received them: roll, pitch, yaw rate (rad/s), thrust (0..1).
+    pub setpoint: Stream<4>,
+    /// Body rates (rad/s) and specific force (m/s2), each along x, y, z.
+    pub imu: Stream<6>,
+    /// Position (m, world), attitude (body to world, w x y z), velocity (m/s, BODY frame).
+    pub odometry: Stream<10>,
+    /// Voltage (V) and current (A).
+    pub battery: Stream<2>,
+    /// Rotor speeds, rad/s.
+    pub rotors: Stream<4>,
+    pub vehicle: VehicleRecord,
+    /// What of the file could be read.
+    pub readable: Readable,
+}
+
+/// What a log says about the vehicle that flew it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VehicleRecord {
+    pub mass_kg: Option<f64>,
+    /// Body rates that a full stick asks for: roll, pitch, yaw, rad/s.
+    pub max_rate_rad_s: Option<[f64; 3]>,
+}
+
+/// How much of a file could be read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Readable {
+    #[default]
+    Whole,
+    /// The file breaks off, or turns bad, after so many of its bytes; what came before is in the log.
+    Prefix { bytes: u64, of: u64, why: String },
+}
