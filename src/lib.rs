@@ -23,9 +23,10 @@ pub mod flight;
 pub mod nn;
 pub mod policy;
 pub mod sim;
-// The race, learning it, scoring it.
+// The race, learning it, scoring it; the vehicle from its flights.
 pub mod env;
 pub mod eval;
+pub mod identify;
 pub mod ppo;
 // Keeping, measuring, showing.
 pub mod bench;

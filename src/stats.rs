@@ -15,6 +15,46 @@ pub fn quantile(x: &[f64], q: f64) -> f64 {
     low + (high - low) * at.fract()
 }
 
+pub fn median(x: &[f64]) -> f64 {
+    quantile(x, 0.5)
+}
+
+/// Standard deviation of normal samples, from the median of their distances to zero: outliers hardly move it.
+pub fn robust_sd(centred: &[f64]) -> f64 {
+    1.4826 * median(&centred.iter().map(|x| x.abs()).collect::<Vec<_>>())
+}
+
+/// Correlation coefficient; 0 where one of them does not vary.
+pub fn correlation(x: &[f64], y: &[f64]) -> f64 {
+    let (mx, my) = (mean(x), mean(y));
+    let sum = |f: &dyn Fn(f64, f64) -> f64| x.iter().zip(y).map(|(x, y)| f(x - mx, y - my)).sum::<f64>();
+    let (xy, xx, yy) = (sum(&|x, y| x * y), sum(&|x, _| x * x), sum(&|_, y| y * y));
+    if xx > 0.0 && yy > 0.0 { xy / (xx * yy).sqrt() } else { 0.0 }
+}
+
+/// How well something measured was predicted.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Score {
+    /// Root of the mean squared error.
+    pub rmse: f64,
+    /// Mean absolute error.
+    pub mae: f64,
+    /// Share of the variance that the prediction explains: 1 - sum(error^2) / sum((measured - mean)^2).
+    pub r2: f64,
+    pub n: usize,
+}
+
+impl Score {
+    pub fn of(measured: &[f64], predicted: &[f64]) -> Self {
+        let middle = mean(measured);
+        let errors: Vec<f64> = measured.iter().zip(predicted).map(|(m, p)| m - p).collect();
+        let squares = mean(&errors.iter().map(|e| e * e).collect::<Vec<_>>());
+        let variance = mean(&measured.iter().map(|m| (m - middle).powi(2)).collect::<Vec<_>>());
+        let mae = mean(&errors.iter().map(|e| e.abs()).collect::<Vec<_>>());
+        Score { rmse: squares.sqrt(), mae, r2: 1.0 - squares / variance, n: errors.len() }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -25,5 +65,15 @@ mod tests {
         assert_eq!([0.0, 0.5, 1.0].map(|q| quantile(&x, q)), [1.0, 2.5, 4.0]);
         assert!((quantile(&x, 0.05) - 1.15).abs() < 1e-12);
         assert!(quantile(&[], 0.5).is_nan());
+    }
+
+    #[test]
+    fn scores_by_hand() {
+        // Errors 1, -1, 0, 0; the measured values lie 3, 1, 1, 3 from their mean.
+        let score = Score::of(&[1.0, 3.0, 5.0, 7.0], &[0.0, 4.0, 5.0, 7.0]);
+        assert_eq!(score, Score { rmse: 0.5f64.sqrt(), mae: 0.5, r2: 1.0 - 2.0 / 20.0, n: 4 });
+        assert_eq!(correlation(&[1.0, 2.0, 3.0], &[5.0, 3.0, 1.0]), -1.0);
+        assert_eq!(correlation(&[1.0, 2.0], &[5.0, 5.0]), 0.0);
+        assert!((robust_sd(&[-1.0, 1.0, 1.0, -1.0, 100.0]) - 1.4826).abs() < 1e-12);
     }
 }

@@ -6,6 +6,7 @@ use crate::check::{BadInput, Check, Invalid};
 use crate::document::Library;
 use crate::dynamics::thrust::specific_thrust;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 const LIBRARY: Library = Library {
     kind: "vehicle",
@@ -31,6 +32,36 @@ pub struct Vehicle {
     pub max_rate_deg_s: MaxRates,
     pub drag: Drag,
     pub battery: Battery,
+    /// Where the numbers come from, if from flights.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub identified: Option<Identified>,
+}
+
+/// The origin of an identified vehicle. Nothing here changes how it flies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Identified {
+    /// Version of racer that identified it.
+    pub racer: String,
+    /// The vehicle that lent what the flights could not tell.
+    pub base: String,
+    /// Rate setpoints that a command of 1 stands for: roll, pitch, yaw, deg/s. A policy's command times these is what
+    /// the flight controller is to be sent.
+    pub full_rate_deg_s: [f64; 3],
+    pub logs: Vec<LogSpan>,
+    /// Keys of this file that the base vehicle lent, and why.
+    pub assumed: BTreeMap<String, String>,
+    /// 95 % confidence intervals by key; drag as deceleration over speed squared, 1/m.
+    pub interval: BTreeMap<String, [f64; 2]>,
+}
+
+/// A flight, and from when to when it was used.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LogSpan {
+    pub name: String,
+    /// s since the start of the log.
+    pub span_s: [f64; 2],
 }
 
 /// First-order response of each command (Eq. 6), s.
@@ -115,7 +146,8 @@ impl Vehicle {
         low
     }
 
-    fn check_thrust(&self) -> Result<(), Invalid> {
+    /// Thrust must grow with the command and be able to lift the vehicle.
+    pub fn check_thrust(&self) -> Result<(), Invalid> {
         let finite = self.thrust_n.iter().all(|c| c.is_finite());
         let found = format!("{:?}", self.thrust_n);
         Invalid::unless(finite, "thrust_n", &found, "six finite numbers", "")?;

@@ -1,0 +1,45 @@
+//! A value with its interval, or the reason why there is none.
+
+use super::solve::Solution;
+use serde::Serialize;
+
+/// A value and its 95 % confidence interval; where `why` is set, the logs cannot tell it and the numbers are null.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    pub value: Option<f64>,
+    pub low: Option<f64>,
+    pub high: Option<f64>,
+    /// Why the logs cannot tell it, or what else to know about it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+}
+
+impl Estimate {
+    /// `value` within `half_width` on either side.
+    pub fn new(value: f64, half_width: f64) -> Self {
+        Self { value: Some(value), low: Some(value - half_width), high: Some(value + half_width), why: None }
+    }
+
+    /// Value `i` of a fit. A value at one of its bounds has no interval.
+    pub fn of(solution: &Solution, i: usize) -> Self {
+        let value = solution.values[i];
+        if solution.at_bound[i] {
+            return Self { value: Some(value), why: Some("at the bound of the search".into()), ..Self::default() };
+        }
+        Self::new(value, solution.half_width(i))
+    }
+
+    pub fn unknown(why: impl Into<String>) -> Self {
+        Self { why: Some(why.into()), ..Self::default() }
+    }
+
+    /// The same in another unit.
+    pub fn times(&self, factor: f64) -> Self {
+        let scaled = |x: Option<f64>| x.map(|x| x * factor);
+        Self { value: scaled(self.value), low: scaled(self.low), high: scaled(self.high), why: self.why.clone() }
+    }
+
+    pub fn interval(&self) -> Option<[f64; 2]> {
+        Some([self.low?, self.high?])
+    }
+}
