@@ -2,7 +2,12 @@
 //!
 //! A file is read into tables of named columns ([`table`]), and a mapping ([`mapping`]) says what the columns mean.
 
+pub mod csv;
+pub mod mapping;
+mod open;
 pub mod table;
+
+pub use open::{Opened, Options, open, open_with};
 
 /// Numbers over time: row i was measured at `time_s[i]`. NaN stands for what was not measured.
 #[derive(Clone, Debug, Default, PartialEq)]
