@@ -2,11 +2,16 @@
 //!
 //! A file is read into tables of named columns ([`table`]), and a mapping ([`mapping`]) says what the columns mean.
 
+mod open;
+pub mod csv;
 pub mod lowpass;
+pub mod mapping;
 pub mod quality;
 pub mod series;
 pub mod spans;
 pub mod table;
+
+pub use open::{Opened, Options, open, open_with};
 
 /// Numbers over time: row i was measured at `time_s[i]`. NaN stands for what was not measured.
 #[derive(Clone, Debug, Default, PartialEq)]
