@@ -1,7 +1,10 @@
 //! The command line: arguments in, text and exit code out. Nothing else prints.
 
 mod bench;
+mod check;
 mod eval;
+mod findings;
+mod identify;
 mod interrupt;
 mod pool;
 mod progress;
@@ -25,6 +28,8 @@ struct Cli {
 enum Command {
     Train(train::Args),
     Eval(eval::Args),
+    Check(check::Args),
+    Identify(identify::Args),
     Bench(bench::Args),
 }
 
@@ -34,6 +39,7 @@ Exit codes:
   0    done
   1    something failed on the way, such as a full disk
   2    bad input: nothing was started
+  3    a flight log is damaged; its readable part was used
   4    `--require` was not met
   130  stopped by Ctrl-C";
 
@@ -41,6 +47,7 @@ Exit codes:
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
     Done,
+    Damaged,
     NotMet,
     Interrupted,
 }
@@ -49,6 +56,7 @@ impl Outcome {
     fn code(self) -> u8 {
         match self {
             Outcome::Done => 0,
+            Outcome::Damaged => 3,
             Outcome::NotMet => 4,
             Outcome::Interrupted => 130,
         }
@@ -61,6 +69,8 @@ pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Train(args) => train::run(&args),
         Command::Eval(args) => eval::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Identify(args) => identify::run(&args),
         Command::Bench(args) => bench::run(&args),
     };
     let code = result.map(Outcome::code).unwrap_or_else(|error| {

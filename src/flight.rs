@@ -2,10 +2,10 @@
 //!
 //! A file is read into tables of named columns ([`table`]), and a mapping ([`mapping`]) says what the columns mean.
 
-mod open;
 pub mod csv;
 pub mod lowpass;
 pub mod mapping;
+mod open;
 pub mod quality;
 pub mod series;
 pub mod spans;

@@ -6,6 +6,7 @@
 pub mod battery;
 pub mod bias;
 pub mod data;
+pub mod document;
 pub mod estimate;
 pub mod flight;
 pub mod force;

@@ -1,5 +1,6 @@
 //! Pictures of a run. They draw numbers and compute none.
 
+pub mod identification;
 pub mod lap;
 pub mod training;
 

@@ -8,6 +8,11 @@ use crate::flight::spans::length;
 /// the rest (paper section 4.1).
 pub const TRAIN_SHARE: f64 = 0.7;
 
+/// Residuals of different stretches of time are taken for independent. Their length, s: longer than the noise remembers, and
+/// so many stretches that their spread can be told.
+const BLOCK_S: [f64; 2] = [0.3, 2.0];
+const BLOCKS: f64 = 100.0;
+
 /// Which samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
@@ -29,10 +34,12 @@ pub type Chosen = Vec<Vec<usize>>;
 
 impl Data {
     pub fn new(logs: Vec<Quality>) -> Self {
+        let usable: f64 = logs.iter().map(|log| length(&log.usable)).sum();
+        let block_s = (usable / BLOCKS).clamp(BLOCK_S[0], BLOCK_S[1]);
         let mut first_block = 0;
         let mut flights = Vec::new();
         for quality in logs {
-            let flight = Flight::new(quality, first_block);
+            let flight = Flight::new(quality, first_block, block_s);
             first_block = flight.block.last().map_or(first_block, |last| last + 1);
             flights.push(flight);
         }

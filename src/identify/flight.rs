@@ -7,8 +7,6 @@ use crate::flight::quality::Quality;
 use crate::flight::series::{held, interpolated, period};
 use crate::flight::spans::contain;
 
-/// Residuals further apart than this are taken for independent, s.
-const BLOCK_S: f64 = 2.0;
 /// Odometry is not interpolated across more than this, s.
 const REACH_S: f64 = 0.25;
 /// Cut-off of the voltage, Hz: sag stays, noise goes.
@@ -30,15 +28,15 @@ pub struct Flight {
 }
 
 impl Flight {
-    /// `first_block` is the number of its first stretch.
-    pub fn new(quality: Quality, first_block: u32) -> Self {
+    /// `first_block` is the number of its first stretch, `block_s` their length.
+    pub fn new(quality: Quality, first_block: u32, block_s: f64) -> Self {
         let log = &quality.log;
         let time = log.imu.time_s.clone();
         let start = time.first().copied().unwrap_or(0.0);
         let usable = time.iter().map(|&t| contain(&quality.usable, t)).collect();
         let velocity =
             std::array::from_fn(|k| interpolated(&log.odometry.time_s, &log.odometry.column(7 + k), &time, REACH_S));
-        let block = time.iter().map(|t| first_block + ((t - start) / BLOCK_S) as u32).collect();
+        let block = time.iter().map(|t| first_block + ((t - start) / block_s) as u32).collect();
         Self { voltage: voltage(&log.battery, &time), velocity, usable, block, time, quality }
     }
 

@@ -224,11 +224,11 @@ fn descend(
                     damping = (damping * 0.1).max(1e-9);
                     break cost - lower;
                 }
-                _ if damping > 1e6 => break 0.0,
+                _ if damping > 1e2 => break 0.0,
                 _ => damping *= 10.0,
             }
         };
-        if gain <= 1e-10 * cost {
+        if gain <= 1e-8 * cost {
             return Some(());
         }
     }

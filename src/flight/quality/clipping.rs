@@ -6,7 +6,7 @@ use crate::flight::spans::{Span, around};
 
 const NAMES: [&str; 6] = ["rate x", "rate y", "rate z", "specific force x", "specific force y", "specific force z"];
 /// So many equal samples in a row at a signal's largest size are clipping, not chance.
-const RUN: usize = 4;
+const RUN: usize = 5;
 /// Below these sizes (rad/s, m/s2) nothing clips: a quiet quantised signal repeats itself too.
 const LEAST: [f64; 2] = [8.0, 30.0];
 const MARGIN_S: f64 = 0.1;
@@ -19,8 +19,7 @@ pub fn find(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
         let x = imu.column(k);
         for (sign, side) in [(1.0, "largest"), (-1.0, "smallest")] {
             let most = x.iter().map(|x| sign * x).fold(f64::NEG_INFINITY, f64::max);
-            // Sensors clip within a count or two.
-            let at_end: Vec<bool> = x.iter().map(|x| sign * x >= most - 1e-3 * most.abs()).collect();
+            let at_end: Vec<bool> = x.iter().map(|x| sign * x == most).collect();
             let mut clipped = vec![false; x.len()];
             for end in RUN..=x.len() {
                 if at_end[end - RUN..end].iter().all(|&at| at) {

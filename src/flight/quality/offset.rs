@@ -42,7 +42,8 @@ pub fn turns(odometry: &Stream<10>) -> Turns {
         let axis = turn[1].hypot(turn[2]).hypot(turn[3]);
         let angle = 2.0 * axis.atan2(sign * turn[0]);
         let scale = if axis > 1e-9 { sign * angle / axis } else { 2.0 };
-        if scale.is_finite() && span[1] - span[0] < 10.0 * OVER_S {
+        // An attitude that was not measured is no number, and makes none.
+        if turn.iter().all(|x| x.is_finite()) && span[1] - span[0] < 10.0 * OVER_S {
             out.spans.push(span);
             out.measured.push([turn[1] * scale, turn[2] * scale, turn[3] * scale]);
         }

@@ -18,6 +18,8 @@ const CRASH_TAIL_S: f64 = 3.0;
 const BIN_S: f64 = 0.1;
 /// Standing still for less than this in mid-flight is not a landing, s.
 const LANDING_S: f64 = 2.0;
+/// The same at the beginning and at the end of a log, s.
+const RESTING_S: f64 = 0.2;
 /// Kept away from take-off and landing, s.
 const GROUND_MARGIN_S: f64 = 0.3;
 
@@ -88,7 +90,8 @@ pub fn ground(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
     let still = bridged(bins.iter().filter(idle).map(|bin| bin.0).collect());
     let (start, end) = (imu.time_s[0], imu.time_s[imu.len() - 1]);
     let at_an_end = |s: &Span| s[0] <= start + 1.0 || s[1] >= end - 1.0;
-    let mut holes: Vec<Span> = still.into_iter().filter(|s| s[1] - s[0] >= LANDING_S || at_an_end(s)).collect();
+    let landed = |s: &Span| s[1] - s[0] >= if at_an_end(s) { RESTING_S } else { LANDING_S };
+    let mut holes: Vec<Span> = still.into_iter().filter(landed).collect();
     for hole in &mut holes {
         *hole = [hole[0] - GROUND_MARGIN_S, hole[1] + GROUND_MARGIN_S];
         if hole[0] <= start + 1.0 {

@@ -1,0 +1,67 @@
+//! `racer check`: what a flight log holds, and what is wrong with it.
+
+use super::{Outcome, findings, tell};
+use crate::flight::quality::{Finding, Parameter, Summary, check, told};
+use crate::flight::spans::Span;
+use crate::flight::{self, Readable};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Say what a flight log holds, what is wrong with it, and which model parameters it can tell
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Args {
+    /// A log: MCAP, Betaflight blackbox, PX4 ULog or CSV
+    #[arg(value_name = "LOG")]
+    log: PathBuf,
+    /// What the log's fields mean: a mapping's name or file [default: the format's own, or the one that fits]
+    #[arg(long, value_name = "NAME|FILE")]
+    mapping: Option<String>,
+    /// Print JSON in place of text
+    #[arg(long)]
+    json: bool,
+}
+
+const HELP: &str = "Exit code 3 means that the file is damaged and only its readable part was checked.
+
+Examples:
+  racer check flight.mcap
+  racer check flight.csv.gz --mapping indiflight";
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Document<'a> {
+    log: &'a str,
+    streams: &'a [Summary],
+    findings: &'a [Finding],
+    usable_s: &'a [Span],
+    parameters: &'a [Parameter],
+}
+
+/// Reads, checks, prints.
+pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    let opened = flight::open_with(&args.log, flight::Options { mapping: args.mapping.as_deref(), flight: None })?;
+    opened.remarks.iter().for_each(|remark| tell(remark));
+    let quality = check(&opened.log);
+    let parameters = told(&quality);
+    if args.json {
+        let document = Document {
+            log: &opened.log.name,
+            streams: &quality.streams,
+            findings: &quality.findings,
+            usable_s: &quality.usable,
+            parameters: &parameters,
+        };
+        super::print(&serde_json::to_string_pretty(&document)?)?;
+    } else {
+        super::print(&format!(
+            "{}\n\n{}\n\n{}\n\n{}\n\n{}",
+            opened.log.name,
+            findings::streams(&quality.streams),
+            findings::findings(&quality.findings),
+            findings::usable(&opened.log, &quality),
+            findings::told(&parameters)
+        ))?;
+    }
+    Ok(if opened.log.readable == Readable::Whole { Outcome::Done } else { Outcome::Damaged })
+}

@@ -1,0 +1,70 @@
+//! A log's check as text.
+
+use crate::flight::Log;
+use crate::flight::quality::{Finding, Parameter, Quality, Severity, Summary};
+use crate::flight::spans::length;
+use comfy_table::{Cell, CellAlignment, Table, presets};
+
+/// A table without frames, numbers to the right from column `numbers` on.
+pub fn table(header: &[&str], rows: Vec<Vec<String>>, numbers: std::ops::Range<usize>) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_header(header.iter().enumerate().map(|(i, text)| {
+        let side = if numbers.contains(&i) { CellAlignment::Right } else { CellAlignment::Left };
+        Cell::new(text).set_alignment(side)
+    }));
+    table.add_rows(rows);
+    for i in numbers {
+        if let Some(column) = table.column_mut(i) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table.trim_fmt()
+}
+
+/// What the log holds, stream by stream.
+pub fn streams(streams: &[Summary]) -> String {
+    let number = |value: Option<f64>, digits: usize| value.map_or("-".into(), |v| format!("{v:.digits$}"));
+    let row = |s: &Summary| {
+        vec![
+            s.stream.to_string(),
+            s.samples.to_string(),
+            number(s.rate_hz, 0),
+            format!("{:.0} %", 100.0 * s.fresh),
+            number(s.span_s.map(|s| s[0]), 1),
+            number(s.span_s.map(|s| s[1]), 1),
+        ]
+    };
+    let header = ["stream", "samples", "rate, Hz", "fresh", "from, s", "to, s"];
+    table(&header, streams.iter().map(row).collect(), 1..6)
+}
+
+/// The findings, the worst first.
+pub fn findings(findings: &[Finding]) -> String {
+    if findings.is_empty() {
+        return "nothing wrong was found".into();
+    }
+    let line = |f: &Finding| {
+        let severity = match f.severity {
+            Severity::Problem => "PROBLEM",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        };
+        let when = f.span_s.map_or(String::new(), |[from, to]| format!(" at {from:.1} to {to:.1} s"));
+        format!("{severity:<8} {}{when}: {}; {}", f.stream, f.what, f.so)
+    };
+    findings.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// What the log can and cannot tell.
+pub fn told(parameters: &[Parameter]) -> String {
+    let row =
+        |p: &Parameter| vec![p.name.to_string(), p.why_not.clone().map_or("yes".into(), |why| format!("no: {why}"))];
+    table(&["parameter", "can be told"], parameters.iter().map(row).collect(), 0..0)
+}
+
+/// Usable time out of all time, as a sentence.
+pub fn usable(log: &Log, quality: &Quality) -> String {
+    let times = &log.imu.time_s;
+    let whole = times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first);
+    format!("{:.1} of {whole:.1} s are usable flight", length(&quality.usable))
+}

@@ -1,0 +1,198 @@
+//! `racer identify`: a vehicle from its flights.
+
+use super::{Outcome, findings, tell};
+use crate::check::{BadInput, Check};
+use crate::flight::quality::{Quality, check};
+use crate::flight::{self, Readable};
+use crate::fsio::Reserved;
+use crate::identify::document::{CheckedLog, Document};
+use crate::identify::estimate::Estimate;
+use crate::identify::result::Identification;
+use crate::identify::{AXES, Options, identify};
+use crate::report;
+use crate::vehicle::Vehicle;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::{Path, PathBuf};
+
+/// Identify a vehicle from flight logs
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Args {
+    /// Logs of one vehicle in the order of flight: MCAP, Betaflight blackbox, PX4 ULog or CSV
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+    /// New file for the vehicle, which `racer train --vehicle` reads
+    #[arg(long, value_name = "V.toml")]
+    out: PathBuf,
+    /// New file for everything that was found, as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// New file for the report with figures, one page
+    #[arg(long, value_name = "F.html")]
+    report: Option<PathBuf>,
+    /// What the logs' fields mean: a mapping's name or file [default: the format's own, or the one that fits]
+    #[arg(long, value_name = "NAME|FILE")]
+    mapping: Option<String>,
+    /// Vehicle that lends what the logs cannot tell: a name or a file
+    #[arg(long, value_name = "NAME|FILE", default_value = "seed_class")]
+    base: String,
+    /// What to call the vehicle [default: the name of the new file]
+    #[arg(long)]
+    name: Option<String>,
+    /// Mass, kg [default: what the logs say, else the base vehicle's]
+    #[arg(long, value_name = "KG")]
+    mass: Option<f64>,
+    /// Rates that a full stick asks for, deg/s: roll,pitch,yaw [default: what the logs say, else the base vehicle's]
+    #[arg(long, value_name = "R,P,Y", value_delimiter = ',', num_args = 3)]
+    full_rates: Option<Vec<f64>>,
+    /// Cut-off of the zero-phase filter on measured and predicted rates, Hz
+    #[arg(long, value_name = "HZ", default_value_t = 100.0)]
+    rate_cutoff: f64,
+    /// The same on specific force, where vibration is
+    #[arg(long, value_name = "HZ", default_value_t = 30.0)]
+    force_cutoff: f64,
+}
+
+const HELP: &str =
+    "The log is checked first; what is wrong with it, and what is done about that, is printed. Fly about five \
+minutes: sharp steps on every stick, the whole throttle range, fast passes in every direction, climbs and descents. \
+`racer fly --pilot` shows such a flight.
+
+Exit code 3 means that a log is damaged and that its readable part was used.
+
+Examples:
+  racer identify flight.mcap --out mine.toml --report mine.html
+  racer identify LOG00001.BFL --mass 0.68 --full-rates 700,700,400 --out mine.toml
+  racer train --vehicle mine.toml";
+
+/// Reads, checks, identifies, writes, prints.
+pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    let options = options(args)?;
+    let reserve = |path: &Option<PathBuf>| path.as_deref().map(Reserved::new).transpose();
+    let (out, json, page) = (Reserved::new(&args.out)?, reserve(&args.json)?, reserve(&args.report)?);
+    let bar = ProgressBar::new(100);
+    bar.set_style(ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}")?);
+
+    let mut checked: Vec<Quality> = Vec::new();
+    for path in &args.logs {
+        bar.set_message(format!("reading {}", path.display()));
+        checked.push(read(path, args.mapping.as_deref(), &bar)?);
+    }
+    let mut found = identify(checked.clone(), &options, &mut |step, share| {
+        bar.set_position((100.0 * share) as u64);
+        bar.set_message(step.to_string());
+    });
+    bar.finish_and_clear();
+    let stem = args.out.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    found.vehicle.name = args.name.clone().unwrap_or(stem);
+
+    let nothing = found.channels.is_empty();
+    super::print(&text(&found))?;
+    if nothing {
+        let why = "no parameter could be told; see the table above";
+        return Err(
+            BadInput::new("the logs", why, "at least one response", "`racer check` names what is missing").into()
+        );
+    }
+    if let Err(invalid) = found.vehicle.check() {
+        anyhow::bail!("the identified vehicle cannot fly: {}: {}", invalid.key, invalid.found);
+    }
+    let logs = checked.iter().map(|quality| CheckedLog {
+        name: &quality.log.name,
+        streams: &quality.streams,
+        findings: &quality.findings,
+    });
+    let logs: Vec<_> = logs.collect();
+    if let Some(page) = page {
+        let written = page.write(report::identification::page(&found, &logs)?.as_bytes())?;
+        tell(&format!("report in {}", written.display()));
+    }
+    if let Some(json) = json {
+        let document = serde_json::to_string_pretty(&Document::new(&found, logs))?;
+        tell(&format!("figures in {}", json.write(format!("{document}\n").as_bytes())?.display()));
+    }
+    let written = out.write(toml::to_string(&found.vehicle)?.as_bytes())?;
+    tell(&format!("vehicle in {0}: racer train --vehicle {0}", written.display()));
+    let damaged = checked.iter().any(|quality| quality.log.readable != Readable::Whole);
+    Ok(if damaged { Outcome::Damaged } else { Outcome::Done })
+}
+
+fn options(args: &Args) -> Result<Options, BadInput> {
+    let full = args.full_rates.as_deref().map(|rates| std::array::from_fn(|k| rates[k].to_radians()));
+    let options = Options {
+        base: Vehicle::load(&args.base)?,
+        mass_kg: args.mass,
+        max_rate_rad_s: full,
+        rate_cutoff_hz: args.rate_cutoff,
+        force_cutoff_hz: args.force_cutoff,
+    };
+    options.check().map_err(|invalid| BadInput::at("command line", invalid))?;
+    Ok(options)
+}
+
+/// A log, checked, with what was found printed as remarks.
+fn read(path: &Path, mapping: Option<&str>, bar: &ProgressBar) -> anyhow::Result<Quality> {
+    let opened = flight::open_with(path, flight::Options { mapping, flight: None })?;
+    let quality = check(&opened.log);
+    bar.suspend(|| {
+        tell(&opened.log.name);
+        opened.remarks.iter().for_each(|remark| tell(remark));
+        tell(&findings::findings(&quality.findings));
+        tell(&format!("{}\n", findings::usable(&opened.log, &quality)));
+    });
+    Ok(quality)
+}
+
+/// The result as the paper's Table 1, and everything else below it.
+fn text(found: &Identification) -> String {
+    let digits = |value: Option<f64>, digits: usize| value.map_or("-".into(), |v| format!("{v:.digits$}"));
+    let response = AXES.into_iter().chain(["thrust"]).zip(&found.response).map(|(name, r)| {
+        vec![
+            name.to_string(),
+            estimate(&r.tau_s.times(1e3), 1),
+            digits(r.rmse, 2),
+            digits(r.mae, 2),
+            r.unit.to_string(),
+            digits(r.r2, 3),
+            format!("{}/{}", r.n_train, r.n_validation),
+        ]
+    });
+    let header = ["response", "tau, ms", "RMSE", "MAE", "", "R2", "samples"];
+    let response = findings::table(&header, response.collect(), 1..4);
+    let mut values: Vec<Vec<String>> = Vec::new();
+    let mut add = |name: &str, estimate_of: &Estimate, digits: usize, unit: &str| {
+        values.push(vec![name.into(), estimate(estimate_of, digits), unit.into()]);
+    };
+    for (axis, rate) in AXES.iter().zip(&found.max_rate_rad_s) {
+        add(&format!("maximum {axis} rate"), &rate.times(1f64.to_degrees()), 1, "deg/s");
+    }
+    for (k, c) in found.thrust_n.iter().enumerate() {
+        add(&format!("thrust c{k}"), c, 3, ["N", "N", "N", "N", "N/V", "N/V"][k]);
+    }
+    for (axis, k) in ["x", "y", "z"].iter().zip(&found.drag.k_1_m) {
+        add(&format!("drag over mass, {axis}"), k, 4, "1/m");
+    }
+    add("initial voltage", &found.battery.initial_v, 3, "V");
+    add("discharge", &found.battery.rate_v_s.times(60.0), 3, "V/min");
+    for (axis, bias) in ["x", "y", "z"].iter().zip(&found.accelerometer_bias_m_s2) {
+        add(&format!("accelerometer bias {axis}"), bias, 3, "m/s2");
+    }
+    let values = findings::table(&["parameter", "value (95 % interval)", ""], values, 0..0);
+    let assumed = found.vehicle.identified.iter().flat_map(|identified| &identified.assumed);
+    let base = found.vehicle.identified.as_ref().map_or("", |identified| &identified.base);
+    let assumed: String = assumed.map(|(key, why)| format!("\n  {key}: {why}")).collect();
+    let assumed = if assumed.is_empty() { assumed } else { format!("\n\ntaken from the vehicle {base}{assumed}") };
+    let remarks: String = found.remarks.iter().map(|remark| format!("\n  {remark}")).collect();
+    let remarks = if remarks.is_empty() { remarks } else { format!("\n\nremarks{remarks}") };
+    format!("validated on the last 30 % of the flight\n\n{response}\n\n{values}{assumed}{remarks}")
+}
+
+/// Value and interval, or why there is none.
+fn estimate(estimate: &Estimate, digits: usize) -> String {
+    match (estimate.value, estimate.interval(), &estimate.why) {
+        (Some(value), Some([low, high]), _) => format!("{value:.digits$} ({low:.digits$} to {high:.digits$})"),
+        (Some(value), None, Some(why)) => format!("{value:.digits$} ({why})"),
+        (Some(value), ..) => format!("{value:.digits$}"),
+        (None, _, _) => "-".into(),
+    }
+}

@@ -1,0 +1,136 @@
+//! An identification as one page that needs nothing else: tables, findings, figures.
+
+mod figures;
+
+use crate::identify::AXES;
+use crate::identify::document::CheckedLog;
+use crate::identify::estimate::Estimate;
+use crate::identify::result::Identification;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:960px;margin:2em auto;padding:0 1em;color:#111}
+table{border-collapse:collapse;margin:1em 0}td,th{padding:.2em .8em;text-align:right;border-bottom:1px solid #ccc}
+td:first-child,th:first-child{text-align:left}.why{color:#555}svg{width:100%;height:auto}";
+
+/// The page as HTML.
+pub fn page(found: &Identification, logs: &[CheckedLog]) -> anyhow::Result<String> {
+    let figures = found.channels.iter().map(figures::channel).collect::<anyhow::Result<Vec<_>>>()?;
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head { meta charset="utf-8"; title { (found.vehicle.name) } style { (PreEscaped(STYLE)) } }
+            body {
+                h1 { "Vehicle " (found.vehicle.name) }
+                p { (format!("Identified by racer {} from {:.0} s of usable flight.", env!("CARGO_PKG_VERSION"), found.usable_s)) }
+                (responses(found))
+                (parameters(found))
+                @if !found.remarks.is_empty() { h2 { "Remarks" } ul { @for remark in &found.remarks { li { (remark) } } } }
+                (assumed(found))
+                h2 { "Measured and predicted" }
+                p { "The line divides the part that the parameters were learned from and the part they are validated on. Below each: the residual." }
+                @for figure in &figures { (PreEscaped(figure)) }
+                (checks(logs))
+            }
+        }
+    };
+    Ok(markup.into_string())
+}
+
+fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or("-".into(), |v| format!("{v:.digits$}"))
+}
+
+/// The paper's Table 1.
+fn responses(found: &Identification) -> Markup {
+    html! {
+        h2 { "Response" }
+        table {
+            tr { th { "" } th { "tau, ms" } th { "95 % interval" } th { "RMSE" } th { "MAE" } th { "R²" } th { "training" } th { "validation" } }
+            @for (name, r) in AXES.into_iter().chain(["thrust"]).zip(&found.response) {
+                tr {
+                    td { (name) @if !r.unit.is_empty() { ", " (r.unit) } }
+                    td { (number(r.tau_s.times(1e3).value, 1)) }
+                    td { (interval(&r.tau_s.times(1e3), 1)) }
+                    td { (number(r.rmse, 2)) } td { (number(r.mae, 2)) } td { (number(r.r2, 3)) }
+                    td { (r.n_train) } td { (r.n_validation) }
+                }
+            }
+        }
+    }
+}
+
+fn interval(estimate: &Estimate, digits: usize) -> String {
+    match (estimate.interval(), &estimate.why) {
+        (Some([low, high]), _) => format!("{low:.digits$} to {high:.digits$}"),
+        (None, Some(why)) => why.clone(),
+        (None, None) => String::new(),
+    }
+}
+
+fn parameters(found: &Identification) -> Markup {
+    let degrees = 1f64.to_degrees();
+    let mut rows: Vec<(String, Estimate, usize)> = Vec::new();
+    for (axis, rate) in AXES.iter().zip(&found.max_rate_rad_s) {
+        rows.push((format!("maximum {axis} rate, deg/s"), rate.times(degrees), 1));
+    }
+    for (k, c) in found.thrust_n.iter().enumerate() {
+        rows.push((format!("thrust c{k}, {}", if k < 4 { "N" } else { "N/V" }), c.clone(), 3));
+    }
+    for (axis, k) in ["x", "y", "z"].iter().zip(&found.drag.k_1_m) {
+        rows.push((format!("drag over mass along {axis}, 1/m"), k.clone(), 4));
+    }
+    rows.push(("initial voltage, V".into(), found.battery.initial_v.clone(), 3));
+    rows.push(("discharge, V/s".into(), found.battery.rate_v_s.clone(), 5));
+    for (axis, bias) in ["x", "y", "z"].iter().zip(&found.accelerometer_bias_m_s2) {
+        rows.push((format!("accelerometer bias {axis}, m/s2"), bias.clone(), 3));
+    }
+    html! {
+        h2 { "Parameters" }
+        table {
+            tr { th { "" } th { "value" } th { "95 % interval" } }
+            @for (name, estimate, digits) in &rows {
+                tr { td { (name) } td { (number(estimate.value, *digits)) } td { (interval(estimate, *digits)) } }
+            }
+        }
+        @if let Some([low, high]) = found.flown {
+            p { (format!("The thrust curve was flown from command {low:.2} to {high:.2}; beyond that it is extrapolated.")) }
+        }
+    }
+}
+
+fn assumed(found: &Identification) -> Markup {
+    let Some(identified) = found.vehicle.identified.as_ref().filter(|identified| !identified.assumed.is_empty()) else {
+        return html! {};
+    };
+    html! {
+        h2 { "Taken from the vehicle " (identified.base) }
+        ul { @for (key, why) in &identified.assumed { li { code { (key) } ": " span class="why" { (why) } } } }
+    }
+}
+
+fn checks(logs: &[CheckedLog]) -> Markup {
+    html! {
+        h2 { "Logs" }
+        @for log in logs {
+            h3 { (log.name) }
+            table {
+                tr { th { "stream" } th { "samples" } th { "rate, Hz" } th { "fresh" } }
+                @for stream in log.streams {
+                    tr {
+                        td { (stream.stream) } td { (stream.samples) } td { (number(stream.rate_hz, 0)) }
+                        td { (format!("{:.0} %", 100.0 * stream.fresh)) }
+                    }
+                }
+            }
+            ul {
+                @for f in log.findings {
+                    li {
+                        (f.stream)
+                        @if let Some([from, to]) = f.span_s { (format!(" at {from:.1} to {to:.1} s")) }
+                        ": " (f.what) "; " (f.so)
+                    }
+                }
+            }
+        }
+    }
+}
