@@ -70,6 +70,8 @@ pub struct Race {
     pub lap: Vec<LapPoint>,
     /// Lower and upper corner of the flight volume, m.
     pub volume: [[f64; 3]; 2],
+    /// Offset and scale of the observed voltage: those of the vehicle that the policy was trained with.
+    pub voltage_scale: [f64; 2],
     /// Voltage below which the flight ends, V.
     pub empty_v: f64,
     /// Thrust command that carries the nominal vehicle on a half-empty battery.
@@ -156,6 +158,7 @@ impl Race {
             gates,
             lap,
             volume: [track.volume.min_m, track.volume.max_m],
+            voltage_scale: observe::voltage_scale(&vehicle.battery),
             empty_v: vehicle.battery.empty_v,
             hover_command: vehicle.hover_command(0.5 * (vehicle.battery.full_v + vehicle.battery.empty_v)),
             vehicle: vehicle.clone(),
@@ -236,9 +239,9 @@ impl<L: Lane32> Block<L> {
         // No closure: a closure is compiled on its own, without the block's instructions.
         if race.noisy {
             let noise = noise::of_observation(config, &race.rng, self.environments(), self.step);
-            observe::observe(self, Some(&noise), out, stride);
+            observe::observe(self, Some(&noise), race.voltage_scale, out, stride);
         } else {
-            observe::observe(self, None, out, stride);
+            observe::observe(self, None, race.voltage_scale, out, stride);
         }
     }
 

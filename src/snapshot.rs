@@ -3,7 +3,7 @@
 mod self_test;
 
 use crate::check::{BadInput, Check, Invalid};
-use crate::env::observe::{LAYOUT, OBSERVATIONS};
+use crate::env::observe::{OBSERVATIONS, layout};
 use crate::env::{DT, EnvConfig};
 use crate::eval::EvalConfig;
 use crate::fsio;
@@ -58,7 +58,7 @@ struct Metadata {
     format: String,
     /// Rate at which the policy is to be asked, Hz.
     control_rate_hz: f64,
-    /// What goes in: [`LAYOUT`]. Kept as JSON, because a file may have been written by another version.
+    /// What goes in: [`layout`]. Kept as JSON, because a file may have been written by another version.
     observation: serde_json::Value,
     /// What comes out, after the tanh, each in [-1, 1].
     action: [String; ACTIONS],
@@ -70,15 +70,15 @@ impl Metadata {
         Self {
             format: FORMAT.into(),
             control_rate_hz: (1.0 / DT).round(),
-            observation: layout(),
+            observation: observation(&about.vehicle),
             action: ["roll rate", "pitch rate", "yaw rate", "collective thrust"].map(String::from),
             about: about.clone(),
         }
     }
 }
 
-fn layout() -> serde_json::Value {
-    serde_json::to_value(LAYOUT).unwrap_or_default()
+fn observation(vehicle: &Vehicle) -> serde_json::Value {
+    serde_json::to_value(layout(&vehicle.battery)).unwrap_or_default()
 }
 
 impl Snapshot {
@@ -137,7 +137,7 @@ fn read_about(bytes: &[u8]) -> Result<About, Invalid> {
     if metadata.format != FORMAT {
         return Err(bad(format!("format {}, not {FORMAT}", metadata.format)));
     }
-    if metadata.observation != layout() {
+    if metadata.observation != observation(&metadata.about.vehicle) {
         return Err(bad("another observation layout than this version's".into()));
     }
     metadata.about.check().map_err(|invalid| invalid.within("metadata.about"))?;

@@ -106,6 +106,13 @@ pub struct Battery {
     pub rate_v_s: f64,
 }
 
+impl Battery {
+    /// Voltage at a charge between 0, empty, and 1, full.
+    pub fn at(&self, charge: f64) -> f64 {
+        self.empty_v + charge * (self.full_v - self.empty_v)
+    }
+}
+
 impl Vehicle {
     /// Reads a vehicle by name or file.
     pub fn load(name: &str) -> Result<Self, BadInput> {

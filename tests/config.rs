@@ -116,7 +116,7 @@ fn what_does_not_fit_the_track_or_vehicle_is_refused() {
         assert!(message.starts_with(&format!("--set {setting}")) && message.contains(part), "{message}");
     };
     refuses("env.gate_radius_m=0.8", "at most 0.75 m, the narrowest gate of a2rl_s2");
-    refuses("env.randomize.voltage_v=[21, 24]", "within 22 to 24 V, the battery of seed_class");
+    refuses("env.randomize.charge=[0.1, 1.2]", "at most 1, a full battery");
     let message = Setup::load("a2rl", &[Setting::parse("track=monza").unwrap()]).unwrap_err().to_string();
     assert!(message.contains("track `monza`") && message.contains("uzh_split_s"), "{message}");
 }

@@ -3,7 +3,7 @@
 use racer::config::Config;
 use racer::dynamics::{Factors, State};
 use racer::env::gates::crossing;
-use racer::env::observe::{LAYOUT, OBSERVATIONS};
+use racer::env::observe::{LAYOUT, OBSERVATIONS, layout};
 use racer::env::reset::{self, Place, Start};
 use racer::env::reward::TERMS;
 use racer::env::terminate::CAUSES;
@@ -191,8 +191,9 @@ fn the_observation_is_its_layout() {
     let block = block(&race, [15.5, 3.0, 1.85], [-10.0, 1.0, 0.0], 0);
     let seen = observation(&block, &race);
     let of = |name: &str| {
-        let at: usize = LAYOUT.iter().take_while(|g| g.name != name).map(|g| g.entries.len()).sum();
-        let group = LAYOUT.iter().find(|g| g.name == name).unwrap();
+        let layout = layout(&race.vehicle.battery);
+        let at: usize = layout.iter().take_while(|g| g.name != name).map(|g| g.entries.len()).sum();
+        let group = layout.iter().find(|g| g.name == name).unwrap();
         (0..group.entries.len()).map(|k| f64::from(seen[at + k][7]) / group.scale + group.offset).collect::<Vec<_>>()
     };
     let near = |a: Vec<f64>, b: &[f64]| {

@@ -7,6 +7,7 @@ use super::Block;
 use super::noise::Noise;
 use crate::dynamics::attitude::{body_axes, cross};
 use crate::lane::{Lane, build, each};
+use crate::vehicle::Battery;
 
 /// Consecutive entries of the observation that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -45,10 +46,25 @@ pub const LAYOUT: [Group; 11] = [
     group("action_1", COMMANDS, "1", "action one step ago", 1.0),
     group("action_2", COMMANDS, "1", "action two steps ago", 1.0),
     group("action_3", COMMANDS, "1", "action three steps ago", 1.0),
-    Group { name: "voltage", entries: &["V"], unit: "V", frame: "battery", offset: 23.0, scale: 1.0 },
+    group("voltage", &["V"], "V", "battery", 1.0), // offset and scale: see `layout`
     group("next_gate", XYZ, "m", "gate", 0.1),
     group("second_gate", XYZ, "m", "gate", 0.1),
 ];
+
+/// Index of the group whose offset and scale depend on the vehicle.
+const VOLTAGE: usize = 8;
+
+/// [`LAYOUT`] for a policy trained with `battery`: its voltage goes from -1, empty, to 1, full.
+pub fn layout(battery: &Battery) -> [Group; LAYOUT.len()] {
+    let mut layout = LAYOUT;
+    [layout[VOLTAGE].offset, layout[VOLTAGE].scale] = voltage_scale(battery);
+    layout
+}
+
+/// Offset and scale of the voltage.
+pub fn voltage_scale(battery: &Battery) -> [f64; 2] {
+    [0.5 * (battery.full_v + battery.empty_v), 2.0 / (battery.full_v - battery.empty_v)]
+}
 
 /// Entries of an observation.
 pub const OBSERVATIONS: usize = {
@@ -81,9 +97,15 @@ const SCALES: [(f32, f32); OBSERVATIONS] = {
 };
 
 /// Writes the observation of the 16 lanes of `block`, entry `k` to `out[k * stride..]`, with `noise` on what an estimator
-/// would have to estimate.
+/// would have to estimate. `voltage_scale` is the offset and scale of the voltage.
 #[inline(always)]
-pub fn observe<L: Lane<Elem = f32>>(block: &Block<L>, noise: Option<&Noise<L>>, out: &mut [f32], stride: usize) {
+pub fn observe<L: Lane<Elem = f32>>(
+    block: &Block<L>,
+    noise: Option<&Noise<L>>,
+    voltage_scale: [f64; 2],
+    out: &mut [f32],
+    stride: usize,
+) {
     let gate = &block.gate;
     let mut position = block.in_gate;
     let mut velocity = gate.rotate(block.state.velocity);
@@ -111,7 +133,7 @@ pub fn observe<L: Lane<Elem = f32>>(block: &Block<L>, noise: Option<&Noise<L>>, 
         &block.history[0],
         &block.history[1],
         &block.history[2],
-        &[voltage],
+        &[(voltage - L::of(voltage_scale[0])) * L::of(voltage_scale[1])],
         &gate.next[0],
         &gate.next[1],
     ];

@@ -64,7 +64,11 @@ pub fn draw(race: &Race, rng: &mut Sequence, place: Place, factors: Option<Facto
     let config = &race.config;
     let nominal = factors.is_some();
     let factors = factors.unwrap_or_else(|| config.randomize.draw(rng));
-    let voltage = if nominal { race.vehicle.battery.full_v } else { rng.uniform(config.randomize.voltage_v) };
+    let voltage = if nominal {
+        race.vehicle.battery.full_v
+    } else {
+        race.vehicle.battery.at(rng.uniform(config.randomize.charge))
+    };
     let parameters = Parameters::new(&race.vehicle, &factors, race.dt);
     let pad = match place {
         Place::Pad => true,

@@ -18,8 +18,8 @@ pub struct RandomizeConfig {
     pub thrust: [f64; 2],
     /// Factor on the drag.
     pub drag: [f64; 2],
-    /// Battery voltage at the start, V.
-    pub voltage_v: [f64; 2],
+    /// Battery voltage at the start: 0 empty, 1 full.
+    pub charge: [f64; 2],
 }
 
 impl Check for RandomizeConfig {
@@ -29,11 +29,12 @@ impl Check for RandomizeConfig {
             ("max_rate", self.max_rate, 0.1),
             ("thrust", self.thrust, 0.1),
             ("drag", self.drag, 0.0),
-            ("voltage_v", self.voltage_v, 0.0),
+            ("charge", self.charge, 0.0),
         ] {
             Invalid::unless_range(key, range, least, "")?;
         }
-        Ok(())
+        let most = self.charge[1];
+        Invalid::unless(most <= 1.0, "charge", most, "at most 1, a full battery", "")
     }
 }
 
