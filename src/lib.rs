@@ -21,6 +21,7 @@ pub mod vehicle;
 // Batches of vehicles, networks, flight logs.
 pub mod flight;
 pub mod nn;
+pub mod pilot;
 pub mod policy;
 pub mod sim;
 // The race, learning it, scoring it; the vehicle from its flights.

@@ -21,6 +21,8 @@ pub enum Stream {
     Weights = 5,
     /// Start states and vehicle parameters of an evaluation.
     Evaluation = 6,
+    /// Sizes and directions of a pilot's manoeuvres.
+    Pilot = 7,
 }
 
 /// The generator's key.
