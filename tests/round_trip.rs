@@ -12,7 +12,7 @@ fn probe() {
     for seed in 1..=seeds {
         let vehicle = truth::Vehicle::random(seed);
         let clock = std::time::Instant::now();
-        let flown = truth::fly(&vehicle, seed, 300.0, 1.0);
+        let flown = truth::fly(&vehicle, seed, 300.0, std::env::var("NOISE").map_or(1.0, |n| n.parse().unwrap()));
         let flew = clock.elapsed().as_secs_f64();
         let top =
             |f: &dyn Fn(&truth::motion::Body) -> f64| flown.bodies.iter().map(f).fold(f64::NEG_INFINITY, f64::max);
@@ -35,10 +35,11 @@ fn probe() {
             mass_kg: None,
             max_rate_rad_s: None,
             rate_cutoff_hz: 100.0,
-            force_cutoff_hz: 30.0,
+            force_cutoff_hz: std::env::var("FC").map_or(30.0, |n| n.parse().unwrap()),
         };
         let clock = std::time::Instant::now();
-        let found = identify(vec![quality], &options, &mut |_, _| ());
+        let found =
+            identify(vec![quality], &options, &mut |s, _| println!("   {:.2} {s}", clock.elapsed().as_secs_f64()));
         println!("  flew in {flew:.1} s, identified in {:.1} s", clock.elapsed().as_secs_f64());
         let show = |name: &str, e: &racer::identify::estimate::Estimate, true_value: f64| {
             let (v, Some([l, h])) = (e.value.unwrap_or(f64::NAN), e.interval()) else {

@@ -38,8 +38,9 @@ pub fn fit(data: &Data, part: Part) -> Option<Solution> {
     let flight: Vec<usize> = chosen.iter().enumerate().flat_map(|(f, c)| vec![f; c.len()]).collect();
     let begins = beginnings(data);
     // A flight without a sample in this part keeps its start.
-    let mut unknowns = vec![Unknown { start: first, low: 0.0, high: 1000.0, step: 1e-2 }; 1 + data.flights.len()];
-    unknowns[RATE] = Unknown { start: 0.0, low: -10.0, high: 10.0, step: 1e-4 };
+    let mut unknowns =
+        vec![Unknown { start: first, low: 0.0, high: 1000.0, step: 1e-2, linear: true }; 1 + data.flights.len()];
+    unknowns[RATE] = Unknown { start: 0.0, low: -10.0, high: 10.0, step: 1e-4, linear: true };
     let residuals = |x: &[f64]| {
         let line = |i: usize| x[INITIAL + flight[i]] + x[RATE] * (times[i] - begins[flight[i]]) - values[i];
         vec![(0..values.len()).map(line).collect()]

@@ -31,7 +31,7 @@ pub fn fit(data: &Data, gravity: f64) -> Option<Solution> {
         };
         (0..3).map(axis).collect()
     };
-    solve(&[Unknown { start: 0.0, low: -3.0, high: 3.0, step: 1e-3 }; 3], &blocks, &residuals)
+    solve(&[Unknown { start: 0.0, low: -3.0, high: 3.0, step: 1e-3, linear: true }; 3], &blocks, &residuals)
 }
 
 fn stretches(flight: &Flight, gravity: f64) -> Vec<Stretch> {

@@ -75,11 +75,13 @@ impl Flight {
         let Some(filter) = LowPass::new(cutoff_hz, dt) else { return x };
         let mut from = 0;
         while from < x.len() {
+            if !x[from].is_finite() {
+                from += 1;
+                continue;
+            }
             let broken = |i: usize| !x[i].is_finite() || self.time[i] - self.time[i - 1] > 5.0 * dt;
             let to = (from + 1..x.len()).find(|&i| broken(i)).unwrap_or(x.len());
-            if x[from].is_finite() {
-                filter.run(&mut x[from..to]);
-            }
+            filter.run(&mut x[from..to]);
             from = to;
         }
         x

@@ -135,15 +135,21 @@ impl<'a> Force<'a> {
         let starts = TAUS_S.iter().filter_map(|&tau| self.linear(tau, &thinned).map(|(c, left)| (left, tau, c)));
         let (_, tau, c) = starts.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let blocks = self.data.blocks(&chosen);
-        let fixed = Unknown { start: 0.0, low: 0.0, high: 0.0, step: 0.0 };
+        let fixed = Unknown { start: 0.0, low: 0.0, high: 0.0, step: 0.0, linear: true };
         let mut unknowns = vec![fixed; UNKNOWNS];
-        unknowns[TAU] = Unknown { start: tau, low: TAU_S[0], high: TAU_S[1], step: 2e-5 };
+        unknowns[TAU] = Unknown { start: tau, low: TAU_S[0], high: TAU_S[1], step: 2e-5, linear: false };
         for k in (0..6).filter(|&k| self.terms.thrust[k]) {
-            unknowns[THRUST + k] = Unknown { start: c[k], low: -1e4, high: 1e4, step: 1e-3 };
+            unknowns[THRUST + k] = Unknown { start: c[k], low: -1e4, high: 1e4, step: 1e-3, linear: true };
         }
         if self.terms.drag {
-            unknowns[DRAG_AT..DRAG_AT + 3].fill(Unknown { start: 0.02, low: DRAG[0], high: DRAG[1], step: 1e-4 });
-            unknowns[OFFSET..].fill(Unknown { start: 0.0, low: -5.0, high: 5.0, step: 1e-3 });
+            unknowns[DRAG_AT..DRAG_AT + 3].fill(Unknown {
+                start: 0.02,
+                low: DRAG[0],
+                high: DRAG[1],
+                step: 1e-4,
+                linear: false,
+            });
+            unknowns[OFFSET..].fill(Unknown { start: 0.0, low: -5.0, high: 5.0, step: 1e-3, linear: true });
         }
         // Only what moves is handed on.
         let moving: Vec<usize> = (0..UNKNOWNS).filter(|&i| unknowns[i].high > unknowns[i].low).collect();

@@ -54,13 +54,13 @@ impl<'a> Axis<'a> {
         };
         let [tau, late] = starts.map(|x| (cost(&x), x)).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
         let mut unknowns = vec![
-            Unknown { start: tau, low: TAU_S[0], high: TAU_S[1], step: 2e-5 },
-            Unknown { start: 1.0, low: 0.2, high: 5.0, step: 1e-3 },
-            Unknown { start: 0.0, low: -2.0, high: 2.0, step: 1e-3 },
+            Unknown { start: tau, low: TAU_S[0], high: TAU_S[1], step: 2e-5, linear: false },
+            Unknown { start: 1.0, low: 0.2, high: 5.0, step: 1e-3, linear: true },
+            Unknown { start: 0.0, low: -2.0, high: 2.0, step: 1e-3, linear: true },
         ];
         if delay {
             // A step below the sampling would see no change at most samples.
-            unknowns.push(Unknown { start: late, low: 0.0, high: DELAY_MOST_S, step: 1e-3 });
+            unknowns.push(Unknown { start: late, low: 0.0, high: DELAY_MOST_S, step: 1e-3, linear: false });
         }
         solve(&unknowns, &blocks, &residuals)
     }

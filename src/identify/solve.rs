@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 /// Residuals beyond so many standard deviations weigh less (Huber).
 const HUBER: f64 = 3.0;
-/// Rounds of new weights, and steps within each.
-const ROUNDS: usize = 3;
-const STEPS: usize = 30;
+/// Most steps, each with new weights, and the relative gain below which they end.
+const STEPS: usize = 25;
+const ENOUGH: f64 = 1e-9;
 
 /// A number to be found.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub struct Unknown {
     pub high: f64,
     /// Size of a physically small change, for derivatives.
     pub step: f64,
+    /// Whether the residuals are linear in it, so that one side of a derivative is enough.
+    pub linear: bool,
 }
 
 /// Where a fit ended.
@@ -56,12 +58,15 @@ pub fn solve(
         return None;
     }
     let mut values: Vec<f64> = unknowns.iter().map(|u| u.start.clamp(u.low, u.high)).collect();
-    let mut system = None;
-    for _ in 0..ROUNDS {
+    let mut damping = 1e-6;
+    for _ in 0..STEPS {
         let weights = Weights::of(&residuals(&values))?;
-        system = Some((descend(unknowns, &mut values, &weights, residuals)?, weights));
+        let system = System::at(unknowns, &values, &weights, residuals)?;
+        if !descend(unknowns, &mut values, &mut damping, &system, residuals) {
+            break;
+        }
     }
-    let (_, weights) = system?;
+    let weights = Weights::of(&residuals(&values))?;
     let system = System::at(unknowns, &values, &weights, residuals)?;
     let (covariance, at_bound) = system.sandwich(unknowns, &values, blocks, stretches)?;
     Some(Solution { values, covariance, at_bound, noise: weights.noise })
@@ -108,19 +113,25 @@ impl<'a> System<'a> {
         weights: &'a Weights,
         residuals: &(dyn Fn(&[f64]) -> Vec<Vec<f64>> + Sync),
     ) -> Option<Self> {
+        let residuals_here = residuals(values);
         let slope = |k: usize| {
             let moved = |by: f64| {
                 let mut values = values.to_vec();
                 values[k] = (values[k] + by).clamp(unknowns[k].low, unknowns[k].high);
                 (values[k], residuals(&values))
             };
-            let ((x1, above), (x0, below)) = (moved(unknowns[k].step), moved(-unknowns[k].step));
+            let (x1, above) = moved(unknowns[k].step);
+            let (x0, below) = if unknowns[k].linear && x1 > values[k] {
+                (values[k], residuals_here.clone())
+            } else {
+                moved(-unknowns[k].step)
+            };
             let scale = 1.0 / (x1 - x0);
             let channel = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| (a - b) * scale).collect();
             above.iter().zip(&below).map(channel).collect::<Vec<Vec<f64>>>()
         };
         let slopes: Vec<_> = (0..values.len()).into_par_iter().map(slope).collect();
-        let residuals = residuals(values);
+        let residuals = residuals_here;
         let product = |a: &[Vec<f64>], b: &[Vec<f64>]| -> f64 {
             let channel = |c: usize| (0..a[c].len()).map(|i| weights.of[c][i] * a[c][i] * b[c][i]).sum::<f64>();
             (0..a.len()).map(channel).sum()
@@ -189,50 +200,35 @@ fn scaled_inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
     Some(DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 
-/// Levenberg-Marquardt steps, kept within the bounds, until they hardly lower the cost.
+/// One Levenberg-Marquardt step within the bounds. Whether it was worth another.
 fn descend(
     unknowns: &[Unknown],
     values: &mut Vec<f64>,
-    weights: &Weights,
+    damping: &mut f64,
+    system: &System,
     residuals: &(dyn Fn(&[f64]) -> Vec<Vec<f64>> + Sync),
-) -> Option<()> {
-    let mut damping = 1e-6;
-    for _ in 0..STEPS {
-        let system = System::at(unknowns, values, weights, residuals)?;
-        let cost = weights.cost(&system.residuals);
-        let free = system.free(unknowns, values);
-        if free.is_empty() {
-            return Some(());
-        }
-        let gain = loop {
-            let mut damped = system.part(&free);
-            for i in 0..free.len() {
-                damped[(i, i)] *= 1.0 + damping;
+) -> bool {
+    let cost = system.weights.cost(&system.residuals);
+    let free = system.free(unknowns, values);
+    while !free.is_empty() && *damping < 100.0 {
+        let mut damped = system.part(&free);
+        (0..free.len()).for_each(|i| damped[(i, i)] *= 1.0 + *damping);
+        if let Some(inverse) = scaled_inverse(damped) {
+            let step = -inverse * DVector::from_fn(free.len(), |i, _| system.gradient[free[i]]);
+            let mut tried = values.clone();
+            for (row, &i) in free.iter().enumerate() {
+                tried[i] = (tried[i] + step[row]).clamp(unknowns[i].low, unknowns[i].high);
             }
-            let tried = scaled_inverse(damped).map(|inverse| {
-                let step = -inverse * DVector::from_fn(free.len(), |i, _| system.gradient[free[i]]);
-                let mut tried = values.clone();
-                for (row, &i) in free.iter().enumerate() {
-                    tried[i] = (tried[i] + step[row]).clamp(unknowns[i].low, unknowns[i].high);
-                }
-                let cost = weights.cost(&residuals(&tried));
-                (tried, cost)
-            });
-            match tried {
-                Some((tried, lower)) if lower <= cost => {
-                    *values = tried;
-                    damping = (damping * 0.1).max(1e-9);
-                    break cost - lower;
-                }
-                _ if damping > 1e2 => break 0.0,
-                _ => damping *= 10.0,
+            let lower = system.weights.cost(&residuals(&tried));
+            if lower <= cost {
+                *values = tried;
+                *damping = (*damping * 0.1).max(1e-9);
+                return cost - lower > ENOUGH * cost;
             }
-        };
-        if gain <= 1e-8 * cost {
-            return Some(());
         }
+        *damping *= 10.0;
     }
-    Some(())
+    false
 }
 
 #[cfg(test)]
@@ -251,7 +247,7 @@ mod tests {
     }
 
     fn unknown(start: f64, low: f64, high: f64) -> Unknown {
-        Unknown { start, low, high, step: 1e-4 }
+        Unknown { start, low, high, step: 1e-4, linear: false }
     }
 
     #[test]
