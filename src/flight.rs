@@ -2,10 +2,12 @@
 //!
 //! A file is read into tables of named columns ([`table`]), and a mapping ([`mapping`]) says what the columns mean.
 
+mod blackbox;
 pub mod csv;
 pub mod mapping;
 mod open;
 pub mod table;
+mod ulog;
 
 pub use open::{Opened, Options, open, open_with};
 

@@ -32,9 +32,7 @@ fn correlation(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
 fn follows_setpoint(log: &Log, axis: usize, until_s: f64) -> f64 {
     let rows = log.imu.time_s.iter().take_while(|&&time| time < until_s).count();
     let step = log.imu.time_s[rows - 1] / rows as f64;
-    let at = |lag: usize| {
-        correlation((lag..rows).map(|i| (log.setpoint.rows[i - lag][axis], log.imu.rows[i][axis])))
-    };
+    let at = |lag: usize| correlation((lag..rows).map(|i| (log.setpoint.rows[i - lag][axis], log.imu.rows[i][axis])));
     (0..(0.25 / step) as usize).map(at).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap()
 }
 
@@ -57,9 +55,7 @@ fn attitude_turns_as_gyro(log: &Log, step: usize) -> [f64; 3] {
         let turn = (attitude(&rows[i]).inverse() * attitude(&rows[i + step])).scaled_axis();
         (turn / (time_s[i + step] - time_s[i]), &log.imu.rows[i + step / 2])
     };
-    std::array::from_fn(|axis| {
-        correlation((0..rows.len() - step).map(at).map(|(rate, gyro)| (rate[axis], gyro[axis])))
-    })
+    std::array::from_fn(|axis| correlation((0..rows.len() - step).map(at).map(|(rate, gyro)| (rate[axis], gyro[axis]))))
 }
 
 /// Median distance, per axis of the world, between the velocity and the slope of the position, m/s.
@@ -96,7 +92,13 @@ fn report(log: &Log) {
 fn betaflight_csv() {
     for (log, until) in logs(
         "betaflight",
-        &["roma_f5_log1.csv.gz", "roma_f5_log2.csv.gz", "roma_f5_log3.csv.gz", "ar8_LOG00037.csv.gz", "gecko_btfl_002_log1.csv.gz"],
+        &[
+            "roma_f5_log1.csv.gz",
+            "roma_f5_log2.csv.gz",
+            "roma_f5_log3.csv.gz",
+            "ar8_LOG00037.csv.gz",
+            "gecko_btfl_002_log1.csv.gz",
+        ],
     )
     .iter()
     .zip([60.0, 80.0, 125.0, 15.0, 130.0])
@@ -110,7 +112,12 @@ fn betaflight_csv() {
 fn indiflight() {
     for log in &logs(
         "indiflight",
-        &["indiflight_LOG00230.csv.gz", "indiflight_LOG00267.csv.gz", "indiflight_LOG00269.csv.gz", "indiflight_LOG00281.csv.gz"],
+        &[
+            "indiflight_LOG00230.csv.gz",
+            "indiflight_LOG00267.csv.gz",
+            "indiflight_LOG00269.csv.gz",
+            "indiflight_LOG00281.csv.gz",
+        ],
     ) {
         report(log);
         println!("  follows {:?} g {}", [0, 1, 2].map(|axis| follows_setpoint(log, axis, 1e9)), gravity(log));
@@ -122,7 +129,12 @@ fn indiflight() {
 fn neurobem() {
     for log in &logs(
         "neurobem",
-        &["neurobem_20210218170320seg2.csv.gz", "neurobem_20210218171908seg2.csv.gz", "neurobem_20210218172600seg1.csv.gz", "neurobem_20210223104803seg2.csv.gz"],
+        &[
+            "neurobem_20210218170320seg2.csv.gz",
+            "neurobem_20210218171908seg2.csv.gz",
+            "neurobem_20210218172600seg1.csv.gz",
+            "neurobem_20210223104803seg2.csv.gz",
+        ],
     ) {
         report(log);
         println!("  att {:?} vel {:?} g {}", attitude_turns_as_gyro(log, 20), velocity_off(log, 50), gravity(log));
@@ -131,7 +143,9 @@ fn neurobem() {
 
 #[test]
 fn nanobench() {
-    for log in &logs("nanobench", &["B2_circle_fast_rep1.csv.gz", "B5_helix_fast_rep1.csv.gz", "B7_oval_fast_rep3.csv.gz"]) {
+    for log in
+        &logs("nanobench", &["B2_circle_fast_rep1.csv.gz", "B5_helix_fast_rep1.csv.gz", "B7_oval_fast_rep3.csv.gz"])
+    {
         report(log);
         println!("  att {:?} vel {:?} g {}", attitude_turns_as_gyro(log, 6), velocity_off(log, 10), gravity(log));
     }

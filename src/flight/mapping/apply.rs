@@ -309,9 +309,14 @@ fn odometry(part: &Odometry, open: &Open) -> Result<Vec<[f64; 10]>, Missing> {
 }
 
 fn battery(part: &Battery, open: &Open) -> Result<Vec<[f64; 2]>, Missing> {
-    let voltage = open.scalar("voltage", &part.voltage)?;
-    let current = open.scalar("current", &part.current)?;
+    let voltage = measured(open.scalar("voltage", &part.voltage)?);
+    let current = measured(open.scalar("current", &part.current)?);
     Ok(voltage.into_iter().zip(current).map(|(voltage, current)| [voltage, current]).collect())
+}
+
+/// A flight controller without the sensor logs nothing but zeros.
+fn measured(values: Vec<f64>) -> Vec<f64> {
+    if values.iter().all(|&value| value == 0.0) { vec![f64::NAN; values.len()] } else { values }
 }
 
 fn rotors(part: &Rotors, open: &Open) -> Result<Vec<[f64; 4]>, Missing> {
