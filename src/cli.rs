@@ -2,6 +2,7 @@
 
 mod bench;
 mod eval;
+mod import;
 mod interrupt;
 mod pool;
 mod progress;
@@ -25,6 +26,7 @@ struct Cli {
 enum Command {
     Train(train::Args),
     Eval(eval::Args),
+    Import(import::Args),
     Bench(bench::Args),
 }
 
@@ -34,6 +36,7 @@ Exit codes:
   0    done
   1    something failed on the way, such as a full disk
   2    bad input: nothing was started
+  3    a flight log is damaged; its readable part was used
   4    `--require` was not met
   130  stopped by Ctrl-C";
 
@@ -41,6 +44,7 @@ Exit codes:
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
     Done,
+    Damaged,
     NotMet,
     Interrupted,
 }
@@ -49,6 +53,7 @@ impl Outcome {
     fn code(self) -> u8 {
         match self {
             Outcome::Done => 0,
+            Outcome::Damaged => 3,
             Outcome::NotMet => 4,
             Outcome::Interrupted => 130,
         }
@@ -61,6 +66,7 @@ pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Train(args) => train::run(&args),
         Command::Eval(args) => eval::run(&args),
+        Command::Import(args) => import::run(&args),
         Command::Bench(args) => bench::run(&args),
     };
     let code = result.map(Outcome::code).unwrap_or_else(|error| {

@@ -100,7 +100,7 @@ impl<'a> Reader<'a> {
             b'A' => self.subscribe(payload, wanted),
             b'D' => self.record(payload),
             // Parameters, text, marks; and what later versions add.
-            b'A'..=b'Z' => Ok(()),
+            other if other.is_ascii_uppercase() => Ok(()),
             other => Err(format!("a message of the unknown kind {other}")),
         }
     }
