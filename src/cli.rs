@@ -5,6 +5,7 @@ mod check;
 mod eval;
 mod findings;
 mod identify;
+mod import;
 mod interrupt;
 mod pool;
 mod progress;
@@ -28,6 +29,7 @@ struct Cli {
 enum Command {
     Train(train::Args),
     Eval(eval::Args),
+    Import(import::Args),
     Check(check::Args),
     Identify(identify::Args),
     Bench(bench::Args),
@@ -71,6 +73,7 @@ pub fn main() -> ExitCode {
         Command::Eval(args) => eval::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),
+        Command::Import(args) => import::run(&args),
         Command::Bench(args) => bench::run(&args),
     };
     let code = result.map(Outcome::code).unwrap_or_else(|error| {

@@ -2,6 +2,7 @@
 //!
 //! A file is read into tables of named columns ([`table`]), and a mapping ([`mapping`]) says what the columns mean.
 
+mod blackbox;
 pub mod csv;
 pub mod lowpass;
 pub mod mapping;
@@ -10,6 +11,7 @@ pub mod quality;
 pub mod series;
 pub mod spans;
 pub mod table;
+mod ulog;
 
 pub use open::{Opened, Options, open, open_with};
 

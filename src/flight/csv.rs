@@ -94,6 +94,9 @@ fn open<'a>(bytes: &'a [u8], name: &str) -> Result<(Reader<'a>, Vec<String>), Ba
     if header.iter().all(String::is_empty) {
         return Err(bad("an empty one".into()));
     }
+    if header.iter().flat_map(|column| column.chars()).any(char::is_control) {
+        return Err(bad("one that is no text".into()));
+    }
     let mut seen = BTreeSet::new();
     match header.iter().find(|column| !column.is_empty() && !seen.insert(*column)) {
         Some(twice) => Err(bad(format!("`{twice}` twice"))),

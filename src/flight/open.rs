@@ -4,7 +4,7 @@ mod choose;
 
 use super::mapping::Mapping;
 use super::table::Tables;
-use super::{Log, csv};
+use super::{Log, blackbox, csv, ulog};
 use crate::check::BadInput;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -56,7 +56,14 @@ pub fn open_with(path: &Path, options: Options) -> Result<Opened, BadInput> {
     };
     let tables = match format {
         Format::Csv => csv_tables(path, &bytes, &name, &mapping)?,
-        _ => unimplemented!(),
+        Format::Blackbox => {
+            let (tables, chosen) = blackbox::tables(&bytes, &name, &mapping.columns(), options.flight)?;
+            remarks.extend(chosen);
+            tables
+        }
+        Format::ULog => ulog::tables(&bytes, &name, &|topic| mapping.wanted(topic))?,
+        // MERGE: super::mcap::tables(&bytes, &|topic| mapping.wanted(topic))?
+        Format::Mcap => return Err(BadInput::new(name, "MCAP", "another kind of log", "")),
     };
     Ok(Opened { log: mapping.apply(&tables, &name)?, mapping: called, remarks })
 }

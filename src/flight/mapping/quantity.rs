@@ -21,8 +21,9 @@ pub struct Vector<U> {
     pub fields: Vec<String>,
     #[serde(default)]
     pub unit: U,
-    #[serde(default = "one")]
-    pub scale: f64,
+    /// One for each component, or one for all; 1 by default.
+    #[serde(default)]
+    pub scale: Vec<f64>,
     /// One for each component; none by default.
     #[serde(default)]
     pub offset: Vec<f64>,
@@ -66,7 +67,10 @@ impl<U: Unit> Vector<U> {
         let (fields, offsets) = (self.fields.len(), self.offset.len());
         Invalid::unless(fields == count, "fields", format!("{fields} of them"), &format!("{count} columns"), "")?;
         check_fields("fields", &self.fields)?;
-        check_scale(self.scale)?;
+        let scales = self.scale.len();
+        let expected = format!("[s] or {count} numbers");
+        Invalid::unless(scales <= 1 || scales == count, "scale", format!("{:?}", self.scale), &expected, "")?;
+        self.scale.iter().try_for_each(|&scale| check_scale(scale))?;
         let ok = offsets == 0 || offsets == count && self.offset.iter().all(|offset| offset.is_finite());
         Invalid::unless(ok, "offset", format!("{:?}", self.offset), &format!("{count} finite numbers"), "")
     }
@@ -74,7 +78,8 @@ impl<U: Unit> Vector<U> {
     /// Component k in SI where its column holds `x`.
     pub(super) fn value(&self, k: usize, x: f64) -> f64 {
         let sign = signed(&self.fields[k]).0;
-        (sign * self.scale * x + self.offset.get(k).unwrap_or(&0.0)) * self.unit.factor()
+        let scale = self.scale.get(k).or(self.scale.first()).unwrap_or(&1.0);
+        (sign * scale * x + self.offset.get(k).unwrap_or(&0.0)) * self.unit.factor()
     }
 }
 
