@@ -200,7 +200,7 @@ fn fit_force(data: &Data, options: &Options, out: &mut Identification) {
         let terms =
             Terms { thrust: [curve[0], curve[1], curve[2], curve[3], voltage, voltage], drag: no_drag.is_none() };
         let force = Force::new(data, terms, taken_off, given, options.force_cutoff_hz);
-        let Some(all) = force.fit(Part::All) else { continue };
+        let Some(all) = force.fit(Part::All, None) else { continue };
         let mut vehicle = out.vehicle.clone();
         vehicle.thrust_n = std::array::from_fn(|k| all.values[THRUST + k] * vehicle.mass_kg);
         let trouble = vehicle.check_thrust().err();
@@ -229,7 +229,7 @@ fn fit_force(data: &Data, options: &Options, out: &mut Identification) {
         out.thrust_n[5] = Estimate::unknown(&why);
         out.remark(format!("thrust over voltage: {why}; c4 = c5 = 0"));
     }
-    validate_force(&force, bias.as_ref(), out);
+    validate_force(&force, &all, bias.as_ref(), out);
 }
 
 fn keep_thrust(
@@ -301,8 +301,8 @@ fn keep_drag(all: &Solution, no_drag: Option<String>, out: &mut Identification) 
     out.assume("drag.coefficient", "the size of the body and its coefficient act alike; the semi-axes follow from it");
 }
 
-fn validate_force(force: &Force, bias: Option<&Solution>, out: &mut Identification) {
-    let Some(train) = force.fit(Part::Train) else {
+fn validate_force(force: &Force, all: &Solution, bias: Option<&Solution>, out: &mut Identification) {
+    let Some(train) = force.fit(Part::Train, Some(all)) else {
         return out.remark("thrust: the training part alone is too short; no validation".into());
     };
     let shown: &[usize] = if out.drag.k_1_m[0].value.is_some() { &[2, 0, 1] } else { &[2] };

@@ -15,8 +15,11 @@ pub fn quantile(x: &[f64], q: f64) -> f64 {
     low + (high - low) * at.fract()
 }
 
+/// Median; NaN for no sample. Of an even number of samples, the upper of the middle two.
 pub fn median(x: &[f64]) -> f64 {
-    quantile(x, 0.5)
+    let mut x = x.to_vec();
+    let middle = x.len() / 2;
+    if x.is_empty() { f64::NAN } else { *x.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// Standard deviation of normal samples, from the median of their distances to zero: outliers hardly move it.

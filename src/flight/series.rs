@@ -46,6 +46,6 @@ mod tests {
         let steps = held(&times, &values, &at);
         assert!(steps[0].is_nan());
         assert_eq!(steps[1..], [0.0, 0.0, 10.0, 10.0, 30.0, 30.0]);
-        assert_eq!(period(&times), 1.5);
+        assert_eq!(period(&times), 2.0);
     }
 }

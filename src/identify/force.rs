@@ -129,7 +129,8 @@ impl<'a> Force<'a> {
     }
 
     /// Fits all unknowns of the terms; the others stay at zero with no width.
-    pub fn fit(&self, part: Part) -> Option<Solution> {
+    /// `near` is a solution to start from.
+    pub fn fit(&self, part: Part, near: Option<&Solution>) -> Option<Solution> {
         let chosen = self.choose(part);
         let thinned: Chosen = chosen.iter().map(|c| c.iter().copied().step_by(7).collect()).collect();
         let starts = TAUS_S.iter().filter_map(|&tau| self.linear(tau, &thinned).map(|(c, left)| (left, tau, c)));
@@ -166,7 +167,8 @@ impl<'a> Force<'a> {
             };
             self.axes().iter().enumerate().map(channel).collect::<Vec<Vec<f64>>>()
         };
-        let moved: Vec<Unknown> = moving.iter().map(|&i| unknowns[i]).collect();
+        let start = |i: usize| near.map_or(unknowns[i].start, |near| near.values[i]);
+        let moved: Vec<Unknown> = moving.iter().map(|&i| Unknown { start: start(i), ..unknowns[i] }).collect();
         let found = solve(&moved, &blocks, &residuals)?;
         let mut out = Solution {
             values: whole(&found.values),

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 const HUBER: f64 = 3.0;
 /// Most steps, each with new weights, and the relative gain below which they end.
 const STEPS: usize = 25;
-const ENOUGH: f64 = 1e-9;
+const ENOUGH: f64 = 1e-7;
 
 /// A number to be found.
 #[derive(Clone, Copy, Debug)]
