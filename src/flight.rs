@@ -2,7 +2,9 @@
 //!
 //! A file is read into tables of named columns ([`table`]), and a mapping ([`mapping`]) says what the columns mean.
 
+pub mod mcap;
 pub mod table;
+pub mod write;
 
 /// Numbers over time: row i was measured at `time_s[i]`. NaN stands for what was not measured.
 #[derive(Clone, Debug, Default, PartialEq)]
