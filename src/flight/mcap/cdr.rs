@@ -1,8 +1,11 @@
 //! CDR messages, decoded by the schema that the file holds.
 
+mod input;
+
 use super::bytes::Bytes;
 use super::column::Columns;
 use super::schema::{Fields, Number, Schema, Type};
+use input::Input;
 
 /// Longer lists are images and point clouds, not measurements of a vehicle.
 pub const LIST: usize = 64;
@@ -10,11 +13,15 @@ pub const LIST: usize = 64;
 /// Bytes of a field path.
 const PATH: usize = 1024;
 
+/// Nodes of a plan.
+const NODES: usize = 1 << 16;
+
 /// Decodes the messages of one channel.
 pub struct Decoder {
     structs: Vec<Fields>,
     root: Type,
     plan: Option<Node>,
+    nodes: usize,
 }
 
 /// A type with the columns that its numbers go to.
@@ -34,7 +41,7 @@ enum Node {
 
 impl Decoder {
     pub fn new(schema: Schema) -> Self {
-        Self { structs: schema.structs, root: schema.root, plan: None }
+        Self { structs: schema.structs, root: schema.root, plan: None, nodes: 0 }
     }
 
     /// Adds what `data` holds to the row being read.
@@ -46,60 +53,73 @@ impl Decoder {
             1 => false,
             _ => return Err(format!("its CDR has representation {kind}; 0 and 1, plain CDR, can be read")),
         };
-        let (structs, mut input) = (&self.structs, Input { all: bytes.0.len(), rest: bytes, big });
+        let mut input = Input { all: bytes.0.len(), rest: bytes, big };
+        let mut planner = Planner { structs: &self.structs, nodes: &mut self.nodes, columns };
         let plan = match &mut self.plan {
             Some(plan) => plan,
-            none => none.insert(plan(structs, &self.root, String::new(), columns)?),
+            none => none.insert(planner.plan(&self.root, String::new())?),
         };
-        read(structs, plan, &mut input, columns)
+        planner.read(plan, &mut input)
     }
 }
 
-fn plan(structs: &[Fields], of: &Type, path: String, columns: &mut Columns) -> Result<Node, String> {
-    if path.len() > PATH {
-        return Err(format!("a field's path is longer than {PATH} bytes"));
-    }
-    columns.spend(128 + path.len())?;
-    Ok(match of {
-        Type::Number(number) => Node::Number(*number, columns.column(&path)?),
-        Type::Time => Node::Time(columns.column(&path)?),
-        Type::Text => Node::Text,
-        Type::Struct(at) => {
-            let fields = structs[*at].iter().map(|(name, of)| {
-                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-                plan(structs, of, path, columns)
-            });
-            Node::Struct(fields.collect::<Result<_, _>>()?)
-        }
-        Type::List { of, count } => Node::List { of: (**of).clone(), count: *count, path, items: Vec::new() },
-        Type::Named(name) => unreachable!("{name} was linked"),
-    })
+struct Planner<'a> {
+    structs: &'a [Fields],
+    nodes: &'a mut usize,
+    columns: &'a mut Columns,
 }
 
-fn read(structs: &[Fields], node: &mut Node, input: &mut Input, columns: &mut Columns) -> Result<(), String> {
-    match node {
-        Node::Number(number, column) => columns.set(*column, input.number(*number).ok_or(SHORT)?),
-        Node::Time(column) => columns.set(*column, input.time().ok_or(SHORT)?),
-        Node::Text => input.text().ok_or(SHORT)?,
-        Node::Struct(fields) => {
-            for field in fields {
-                read(structs, field, input, columns)?;
-            }
+impl Planner<'_> {
+    fn plan(&mut self, of: &Type, path: String) -> Result<Node, String> {
+        if path.len() > PATH {
+            return Err(format!("a field's path is longer than {PATH} bytes"));
         }
-        Node::List { of, count, path, items } => {
-            let n = count.or_else(|| input.length()).ok_or(SHORT)?;
-            if n > LIST {
-                return skip_list(structs, of, n, input).ok_or(SHORT.into());
-            }
-            while items.len() < n {
-                items.push(plan(structs, of, format!("{path}[{}]", items.len()), columns)?);
-            }
-            for item in &mut items[..n] {
-                read(structs, item, input, columns)?;
-            }
+        *self.nodes += 1;
+        if *self.nodes > NODES {
+            return Err(format!("its messages have more than {NODES} fields"));
         }
+        self.columns.spend(128 + path.len())?;
+        Ok(match of {
+            Type::Number(number) => Node::Number(*number, self.columns.column(&path)?),
+            Type::Time => Node::Time(self.columns.column(&path)?),
+            Type::Text => Node::Text,
+            Type::Struct(at) => {
+                let fields = self.structs[*at].iter().map(|(name, of)| {
+                    let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                    self.plan(of, path)
+                });
+                Node::Struct(fields.collect::<Result<_, _>>()?)
+            }
+            Type::List { of, count } => Node::List { of: (**of).clone(), count: *count, path, items: Vec::new() },
+            Type::Named(name) => unreachable!("{name} was linked"),
+        })
     }
-    Ok(())
+
+    fn read(&mut self, node: &mut Node, input: &mut Input) -> Result<(), String> {
+        match node {
+            Node::Number(number, column) => self.columns.set(*column, input.number(*number).ok_or(SHORT)?),
+            Node::Time(column) => self.columns.set(*column, input.time().ok_or(SHORT)?),
+            Node::Text => input.text().ok_or(SHORT)?,
+            Node::Struct(fields) => {
+                for field in fields {
+                    self.read(field, input)?;
+                }
+            }
+            Node::List { of, count, path, items } => {
+                let n = count.or_else(|| input.length()).ok_or(SHORT)?;
+                if n > LIST {
+                    return skip_list(self.structs, of, n, input).ok_or(SHORT.into());
+                }
+                while items.len() < n {
+                    items.push(self.plan(of, format!("{path}[{}]", items.len()))?);
+                }
+                for item in &mut items[..n] {
+                    self.read(item, input)?;
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 const SHORT: &str = "a message is shorter than its schema says";
@@ -127,56 +147,4 @@ fn skip_list(structs: &[Fields], of: &Type, n: usize, input: &mut Input) -> Opti
         return input.rest.take(n.checked_mul(number.size())?).map(|_| ());
     }
     (0..n).try_for_each(|_| skip(structs, of, input))
-}
-
-/// What follows the CDR header, which alignment counts from.
-struct Input<'a> {
-    all: usize,
-    rest: Bytes<'a>,
-    big: bool,
-}
-
-impl Input<'_> {
-    fn align(&mut self, size: usize) -> Option<()> {
-        let at = self.all - self.rest.0.len();
-        self.rest.take(at.next_multiple_of(size) - at).map(|_| ())
-    }
-
-    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
-        self.align(N)?;
-        let mut array = self.rest.array()?;
-        if self.big {
-            array.reverse();
-        }
-        Some(array)
-    }
-
-    fn number(&mut self, number: Number) -> Option<f64> {
-        Some(match number {
-            Number::Bool => f64::from(self.array::<1>()? != [0]),
-            Number::I8 => i8::from_le_bytes(self.array()?).into(),
-            Number::U8 => u8::from_le_bytes(self.array()?).into(),
-            Number::I16 => i16::from_le_bytes(self.array()?).into(),
-            Number::U16 => u16::from_le_bytes(self.array()?).into(),
-            Number::I32 => i32::from_le_bytes(self.array()?).into(),
-            Number::U32 => u32::from_le_bytes(self.array()?).into(),
-            Number::I64 => i64::from_le_bytes(self.array()?) as f64,
-            Number::U64 => u64::from_le_bytes(self.array()?) as f64,
-            Number::F32 => f32::from_le_bytes(self.array()?).into(),
-            Number::F64 => f64::from_le_bytes(self.array()?),
-        })
-    }
-
-    fn time(&mut self) -> Option<f64> {
-        Some(self.number(Number::I32)? + self.number(Number::U32)? / 1e9)
-    }
-
-    fn length(&mut self) -> Option<usize> {
-        self.array().map(|length| u32::from_le_bytes(length) as usize)
-    }
-
-    fn text(&mut self) -> Option<()> {
-        let length = self.length()?;
-        self.rest.take(length).map(|_| ())
-    }
 }

@@ -28,6 +28,11 @@ impl Budget {
     }
 }
 
+/// A time in seconds, rounded once, so that the same time is the same number wherever it comes from.
+pub fn seconds(whole: i64, nanoseconds: i64) -> f64 {
+    (i128::from(whole) * 1_000_000_000 + i128::from(nanoseconds)) as f64 / 1e9
+}
+
 /// The table of one topic while it is read.
 pub struct Columns {
     values: Vec<Vec<f64>>,

@@ -2,10 +2,9 @@
 
 use super::column::Columns;
 use super::{cdr, idl, json, msg, protobuf};
-use prost_reflect::MessageDescriptor;
 
 /// Larger messages and schemas are not those of a vehicle's measurements; what decodes them would take many times their size.
-const BYTES: usize = 4 << 20;
+const BYTES: usize = 1 << 20;
 
 /// A schema record, kept.
 #[derive(PartialEq)]
@@ -18,7 +17,7 @@ pub struct Schema {
 pub enum Decoder {
     Cdr(cdr::Decoder),
     Json,
-    Protobuf(MessageDescriptor),
+    Protobuf(protobuf::Schema),
 }
 
 impl Decoder {
@@ -36,7 +35,7 @@ impl Decoder {
         match (encoding, schema.encoding.as_str()) {
             ("cdr", "ros2msg") => Ok(Self::Cdr(cdr::Decoder::new(msg::schema(&schema.name, text()?)?))),
             ("cdr", "ros2idl") => Ok(Self::Cdr(cdr::Decoder::new(idl::schema(&schema.name, text()?)?))),
-            ("protobuf", "protobuf") => Ok(Self::Protobuf(protobuf::schema(&schema.name, &schema.data)?)),
+            ("protobuf", "protobuf") => Ok(Self::Protobuf(protobuf::Schema::new(&schema.name, &schema.data)?)),
             _ => Err("this encoding is not known".into()),
         }
     }

@@ -1,7 +1,7 @@
 //! JSON messages.
 
 use super::cdr::LIST;
-use super::column::Columns;
+use super::column::{Columns, seconds};
 use serde_json::{Map, Value};
 use std::fmt::Write;
 
@@ -50,5 +50,5 @@ fn read(value: &Value, path: &mut String, columns: &mut Columns) -> Result<(), S
 /// Seconds, if these are the two fields of a time.
 fn time(fields: &Map<String, Value>) -> Option<f64> {
     let nanoseconds = fields.get("nsec").or_else(|| fields.get("nanosec"))?;
-    if fields.len() == 2 { Some(fields.get("sec")?.as_f64()? + nanoseconds.as_f64()? / 1e9) } else { None }
+    if fields.len() == 2 { Some(seconds(fields.get("sec")?.as_i64()?, nanoseconds.as_i64()?)) } else { None }
 }

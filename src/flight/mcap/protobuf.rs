@@ -1,80 +1,97 @@
 //! Protobuf messages, decoded by the descriptors that the file holds.
+//!
+//! Own code, because the reflection library panics on descriptors that contradict themselves, and takes many times the
+//! bytes of a message.
+
+mod descriptor;
+mod wire;
 
 use super::cdr::LIST;
-use super::column::Columns;
-use prost_reflect::{DescriptorPool, DynamicMessage, MessageDescriptor, ReflectMessage, Value};
+use super::column::{Columns, seconds};
+pub use descriptor::Schema;
+use descriptor::{Field, Kind};
 use std::fmt::Write;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use wire::{Wire, values};
 
-/// The type called `name` in a serialized `FileDescriptorSet`.
-pub fn schema(name: &str, descriptors: &[u8]) -> Result<MessageDescriptor, String> {
-    let pool = guard(|| DescriptorPool::decode(descriptors).map_err(|error| error.to_string()))
-        .map_err(|error| format!("its descriptors are damaged: {error}"))?;
-    pool.get_message_by_name(name).ok_or_else(|| format!("its descriptors do not hold {name}"))
-}
+/// Messages within messages that are followed.
+const DEPTH: usize = 32;
 
 /// Adds what `data` holds to the row being read. Fields without presence are 0 where the message leaves them out.
-pub fn decode(schema: &MessageDescriptor, data: &[u8], columns: &mut Columns) -> Result<(), String> {
-    let message = guard(|| DynamicMessage::decode(schema.clone(), data).map_err(|error| error.to_string()))
-        .map_err(|error| format!("a message is damaged: {error}"))?;
-    fields(&message, &mut String::new(), columns)
+pub fn decode(schema: &Schema, data: &[u8], columns: &mut Columns) -> Result<(), String> {
+    Reader { schema, columns, path: String::new(), depth: 0 }.message(schema.root, data)
 }
 
-/// The reflection library panics on some descriptors that no compiler makes, such as maps with keys that are not numbers
-/// or strings. It shares nothing with the caller that a panic could leave half done.
-fn guard<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
-    catch_unwind(AssertUnwindSafe(decode)).unwrap_or(Err("its descriptors contradict themselves".into()))
+struct Reader<'a> {
+    schema: &'a Schema,
+    columns: &'a mut Columns,
+    path: String,
+    depth: usize,
 }
 
-fn fields(message: &DynamicMessage, path: &mut String, columns: &mut Columns) -> Result<(), String> {
-    let length = path.len();
-    for field in message.descriptor().fields() {
-        if field.supports_presence() && !message.has_field(&field) {
-            continue;
+impl Reader<'_> {
+    fn message(&mut self, of: usize, data: &[u8]) -> Result<(), String> {
+        let of = &self.schema.messages[of];
+        let values = values(data).ok_or("a message is damaged")?;
+        if of.time {
+            let part = |number| values.get(&number).and_then(|values| values.last()).map_or(0, Wire::bits) as i64;
+            return self.set(seconds(part(1), part(2)));
         }
-        path.push_str(if length == 0 { "" } else { "." });
-        path.push_str(field.name());
-        read(&message.get_field(&field), path, columns)?;
-        path.truncate(length);
-    }
-    Ok(())
-}
-
-fn read(value: &Value, path: &mut String, columns: &mut Columns) -> Result<(), String> {
-    let number = match value {
-        Value::Bool(flag) => f64::from(*flag),
-        Value::I32(number) | Value::EnumNumber(number) => f64::from(*number),
-        Value::I64(number) => *number as f64,
-        Value::U32(number) => f64::from(*number),
-        Value::U64(number) => *number as f64,
-        Value::F32(number) => f64::from(*number),
-        Value::F64(number) => *number,
-        Value::Message(message) => match time(message) {
-            Some(seconds) => seconds,
-            None => return fields(message, path, columns),
-        },
-        Value::List(items) if items.len() <= LIST => {
-            let length = path.len();
-            for (i, item) in items.iter().enumerate() {
-                write!(path, "[{i}]").expect("a string grows");
-                read(item, path, columns)?;
-                path.truncate(length);
+        if self.depth == DEPTH {
+            return Err(format!("a message nests more than {DEPTH} deep"));
+        }
+        self.depth += 1;
+        let length = self.path.len();
+        for (number, field) in &of.fields {
+            let values = values.get(number).map_or(&[][..], Vec::as_slice);
+            self.path.push_str(if length == 0 { "" } else { "." });
+            self.path.push_str(&field.name);
+            if field.repeated {
+                self.list(field, values)?;
+            } else if let Some(&last) = values.last() {
+                self.single(field, last)?;
+            } else if !field.presence {
+                self.single(field, Wire::Number(0))?;
             }
+            self.path.truncate(length);
+        }
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn list(&mut self, field: &Field, values: &[Wire]) -> Result<(), String> {
+        let mut items = Vec::new();
+        for &value in values {
+            match (value, field.kind) {
+                (Wire::Bytes(packed), Kind::Number(number)) => {
+                    items.extend(number.unpack(packed).ok_or("a message is damaged")?);
+                }
+                _ => items.push(value),
+            }
+        }
+        if items.len() > LIST {
             return Ok(());
         }
-        Value::List(_) | Value::Map(_) | Value::String(_) | Value::Bytes(_) => return Ok(()),
-    };
-    let column = columns.column(path)?;
-    columns.set(column, number);
-    Ok(())
-}
-
-/// Seconds, if this is one of the well-known types for times.
-fn time(message: &DynamicMessage) -> Option<f64> {
-    let descriptor = message.descriptor();
-    if !matches!(descriptor.full_name(), "google.protobuf.Timestamp" | "google.protobuf.Duration") {
-        return None;
+        let length = self.path.len();
+        for (i, &item) in items.iter().enumerate() {
+            write!(self.path, "[{i}]").expect("a string grows");
+            self.single(field, item)?;
+            self.path.truncate(length);
+        }
+        Ok(())
     }
-    let seconds = message.get_field_by_name("seconds")?.as_i64()?;
-    Some(seconds as f64 + f64::from(message.get_field_by_name("nanos")?.as_i32()?) / 1e9)
+
+    fn single(&mut self, field: &Field, value: Wire) -> Result<(), String> {
+        match (field.kind, value) {
+            (Kind::Number(number), Wire::Number(bits)) => self.set(number.value(bits)),
+            (Kind::Message(of), Wire::Bytes(data)) => self.message(of, data),
+            (Kind::Other, _) => Ok(()),
+            (Kind::Number(_) | Kind::Message(_), _) => Err(format!("{} is not what its descriptors say", self.path)),
+        }
+    }
+
+    fn set(&mut self, number: f64) -> Result<(), String> {
+        let column = self.columns.column(&self.path)?;
+        self.columns.set(column, number);
+        Ok(())
+    }
 }
