@@ -6,12 +6,14 @@ mod blackbox;
 pub mod csv;
 pub mod lowpass;
 pub mod mapping;
+pub mod mcap;
 mod open;
 pub mod quality;
 pub mod series;
 pub mod spans;
 pub mod table;
 mod ulog;
+pub mod write;
 
 pub use open::{Opened, Options, open, open_with};
 

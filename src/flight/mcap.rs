@@ -1,0 +1,51 @@
+//! MCAP files, read through the schemas that they hold.
+//!
+//! Every number and flag of a message becomes a column named by its path; a time becomes seconds. Nothing in a file makes
+//! the reader panic, and what it may allocate is bounded ([`column`], [`chunk`], [`decoder`]).
+
+mod bytes;
+mod cdr;
+mod chunk;
+mod column;
+mod decoder;
+mod file;
+mod idl;
+mod json;
+mod msg;
+mod protobuf;
+mod reader;
+mod record;
+mod schema;
+pub(super) mod vehicle;
+
+use super::table::Tables;
+use crate::check::BadInput;
+use reader::Reader;
+
+/// A topic of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Topic {
+    pub name: String,
+    /// Such as `sensor_msgs/msg/Imu`; empty where the file has no schema.
+    pub message: String,
+    /// Of the messages, and of their schema: `cdr, ros2msg`.
+    pub encoding: String,
+    /// Messages that could be read.
+    pub count: u64,
+}
+
+/// The topics for which `wanted` is true, each as a table with the time of logging in `@log_time`.
+///
+/// A file that breaks off gives what came before. An error if the bytes are no MCAP file, or a wanted topic cannot be decoded.
+pub fn tables(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Result<Tables, BadInput> {
+    let mut reader = Reader::new(wanted);
+    let readable = file::walk(bytes, &mut |record| reader.record(record))?;
+    Ok(reader.tables(readable))
+}
+
+/// The topics of a file, by name, as far as it can be read. An error if the bytes are no MCAP file.
+pub fn topics(bytes: &[u8]) -> Result<Vec<Topic>, BadInput> {
+    let mut reader = Reader::new(&|_| false);
+    file::walk(bytes, &mut |record| reader.record(record))?;
+    Ok(reader.topics())
+}
