@@ -98,7 +98,7 @@ fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Result<Fl
         Some(def) => select("gps", def, &header, place, wanted)?,
         None => Vec::new(),
     };
-    Ok(decode(&headers, &main, &gps, &header, bytes.len() as u64))
+    Ok(decode(&headers, &main, &gps, &header, bytes))
 }
 
 /// The fields of a frame that are wanted.
@@ -135,7 +135,7 @@ fn select<'data, D: FrameDef<'data>>(
     Ok(fields)
 }
 
-fn decode(headers: &Headers, main: &[Field], gps: &[Field], header: &Header, of: u64) -> Flight {
+fn decode(headers: &Headers, main: &[Field], gps: &[Field], header: &Header, bytes: &[u8]) -> Flight {
     let mut rows = Rows::new(main);
     let mut fixes = Rows::new(gps);
     let mut plane = headers.gps_frame_def().map(Plane::new);
@@ -152,10 +152,12 @@ fn decode(headers: &Headers, main: &[Field], gps: &[Field], header: &Header, of:
             ParserEvent::Event(_) | ParserEvent::Slow(_) => {}
         }
     }
-    // A flight that was switched off in the air has no end-of-log event.
-    let readable = if parser.is_done() {
+    // A flight that was switched off in the air has no end-of-log event. The library misses the event before padding.
+    let content = bytes.iter().rposition(|byte| ![0, 0xff].contains(byte)).map_or(0, |last| last + 1);
+    let readable = if parser.is_done() || bytes[..content].ends_with(b"End of log") {
         Readable::Whole
     } else {
+        let of = bytes.len() as u64;
         Readable::Prefix { bytes: of, of, why: "the recording breaks off without its end-of-log event".into() }
     };
     let span_s = rows.span_s();

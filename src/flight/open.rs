@@ -62,7 +62,7 @@ pub fn open_with(path: &Path, options: Options) -> Result<Opened, BadInput> {
             tables
         }
         Format::ULog => ulog::tables(&bytes, &name, &|topic| mapping.wanted(topic))?,
-        // MERGE: super::mcap::tables(&bytes, &|topic| mapping.wanted(topic))?
+        // MERGE: as on branch w2-try.
         Format::Mcap => return Err(BadInput::new(name, "MCAP", "another kind of log", "")),
     };
     Ok(Opened { log: mapping.apply(&tables, &name)?, mapping: called, remarks })
