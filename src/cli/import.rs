@@ -67,7 +67,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let opened = flight::open_with(&args.file, options)?;
     opened.remarks.iter().for_each(|remark| tell(remark));
     let log = &opened.log;
-    let written = file.write(&canonical(log)?)?;
+    let written = file.write(&flight::write::mcap(log)?)?;
     super::print(&format!("{}, mapping {}\n\n{}", log.name, opened.mapping, found(log)))?;
     tell(&format!("written to {}", written.display()));
     match &log.readable {
@@ -77,11 +77,6 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
             Ok(Outcome::Damaged)
         }
     }
-}
-
-// MERGE: replace by crate::flight::write::mcap.
-fn canonical(_: &Log) -> anyhow::Result<Vec<u8>> {
-    anyhow::bail!("this build cannot write MCAP")
 }
 
 /// A line a stream, and what is missing.

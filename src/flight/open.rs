@@ -4,7 +4,7 @@ mod choose;
 
 use super::mapping::Mapping;
 use super::table::Tables;
-use super::{Log, blackbox, csv, ulog};
+use super::{Log, blackbox, csv, mcap, ulog};
 use crate::check::BadInput;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -54,7 +54,7 @@ pub fn open_with(path: &Path, options: Options) -> Result<Opened, BadInput> {
         (None, Format::ULog) => (Mapping::built_in("px4")?, "px4".into()),
         (None, Format::Mcap) => (Mapping::built_in("canonical")?, "canonical".into()),
     };
-    let tables = match format {
+    let mut tables = match format {
         Format::Csv => csv_tables(path, &bytes, &name, &mapping)?,
         Format::Blackbox => {
             let (tables, chosen) = blackbox::tables(&bytes, &name, &mapping.columns(), options.flight)?;
@@ -62,10 +62,18 @@ pub fn open_with(path: &Path, options: Options) -> Result<Opened, BadInput> {
             tables
         }
         Format::ULog => ulog::tables(&bytes, &name, &|topic| mapping.wanted(topic))?,
-        // MERGE: as on branch w2-try.
-        Format::Mcap => return Err(BadInput::new(name, "MCAP", "another kind of log", "")),
+        Format::Mcap => mcap::tables(&bytes, &|topic| mapping.wanted(topic))
+            .map_err(|error| BadInput { place: format!("{name}, {}", error.place), ..error })?,
     };
-    Ok(Opened { log: mapping.apply(&tables, &name)?, mapping: called, remarks })
+    let mut log = mapping.apply(&tables, &name);
+    if log.is_err() && format == Format::Mcap {
+        // Again, for a message that names all topics.
+        for topic in mcap::topics(&bytes)? {
+            tables.tables.entry(topic.name).or_default();
+        }
+        log = mapping.apply(&tables, &name);
+    }
+    Ok(Opened { log: log?, mapping: called, remarks })
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, BadInput> {

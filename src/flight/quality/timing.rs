@@ -68,7 +68,7 @@ fn mend<const N: usize>(
         fresh: share,
         span_s: kept.time_s.first().zip(kept.time_s.last()).map(|(&first, &last)| [first, last]),
     };
-    if thin && share < HELD {
+    if thin && !kept.is_empty() && share < HELD {
         let what = format!("only {:.0} % of the rows are fresh, the others repeat the one before", 100.0 * share);
         findings.push(Finding::new(Severity::Note, "held_samples", name, what, "only fresh rows are used"));
         kept = Stream {
