@@ -8,6 +8,9 @@ use crate::dynamics::thrust::specific_thrust;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// How far the thrust may fall as the command grows, as a share of full thrust.
+const THRUST_DIP: f64 = 0.01;
+
 const LIBRARY: Library = Library {
     kind: "vehicle",
     folder: "configs/vehicles",
@@ -159,15 +162,16 @@ impl Vehicle {
         let found = format!("{:?}", self.thrust_n);
         Invalid::unless(finite, "thrust_n", &found, "six finite numbers", "")?;
         for v in [self.battery.empty_v, self.battery.full_v] {
-            // Command in hundredths, from none to full.
-            let falls = (-100..100).find(|&u| {
-                let at = |u: i32| self.thrust_at(f64::from(u) / 100.0, v);
-                at(u + 1) <= at(u)
-            });
-            if let Some(u) = falls {
-                let found = format!("a thrust that falls at command {} and {v} V", f64::from(u) / 100.0);
-                let advice = "check the order and signs of c0..c5";
-                return Err(Invalid::new("thrust_n", found, "a thrust that grows with the command", advice));
+            // Command in hundredths, from none to full. A cubic may dip a little where the rotors idle.
+            let mut most = f64::NEG_INFINITY;
+            for u in (-100..=100).map(|u| f64::from(u) / 100.0) {
+                let thrust = self.thrust_at(u, v);
+                if thrust < most - THRUST_DIP * self.thrust_at(1.0, v).abs() {
+                    let found = format!("a thrust that falls at command {u} and {v:.1} V");
+                    let advice = "check the order and signs of c0..c5";
+                    return Err(Invalid::new("thrust_n", found, "a thrust that grows with the command", advice));
+                }
+                most = most.max(thrust);
             }
         }
         let ratio = self.thrust_to_weight();

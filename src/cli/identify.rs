@@ -2,7 +2,7 @@
 
 use super::{Outcome, findings, tell};
 use crate::check::{BadInput, Check};
-use crate::flight::quality::{Quality, check};
+use crate::flight::quality::{Finding, Quality, Severity, check};
 use crate::flight::{self, Readable};
 use crate::fsio::Reserved;
 use crate::identify::document::{CheckedLog, Document};
@@ -33,6 +33,9 @@ pub struct Args {
     /// What the logs' fields mean: a mapping's name or file [default: the format's own, or the one that fits]
     #[arg(long, value_name = "NAME|FILE")]
     mapping: Option<String>,
+    /// Go on where a log contradicts itself, such as a rate that goes against its setpoint
+    #[arg(long)]
+    despite_problems: bool,
     /// Vehicle that lends what the logs cannot tell: a name or a file
     #[arg(long, value_name = "NAME|FILE", default_value = "seed_class")]
     base: String,
@@ -43,8 +46,8 @@ pub struct Args {
     #[arg(long, value_name = "KG")]
     mass: Option<f64>,
     /// Rates that a full stick asks for, deg/s: roll,pitch,yaw [default: what the logs say, else the base vehicle's]
-    #[arg(long, value_name = "R,P,Y", value_delimiter = ',', num_args = 3)]
-    full_rates: Option<Vec<f64>>,
+    #[arg(long, value_name = "R,P,Y", value_parser = parse_rates)]
+    full_rates: Option<[f64; 3]>,
     /// Cut-off of the zero-phase filter on measured and predicted rates, Hz
     #[arg(long, value_name = "HZ", default_value_t = 100.0)]
     rate_cutoff: f64,
@@ -65,6 +68,15 @@ Examples:
   racer identify LOG00001.BFL --mass 0.68 --full-rates 700,700,400 --out mine.toml
   racer train --vehicle mine.toml";
 
+fn parse_rates(text: &str) -> Result<[f64; 3], String> {
+    let rates: Vec<f64> = text.split(',').filter_map(|rate| rate.trim().parse().ok()).collect();
+    let rates: Result<[f64; 3], _> = rates.try_into();
+    rates
+        .ok()
+        .filter(|rates| rates.iter().all(|r| *r > 0.0))
+        .ok_or("expected three numbers above 0: roll,pitch,yaw".into())
+}
+
 /// Reads, checks, identifies, writes, prints.
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let options = options(args)?;
@@ -77,6 +89,9 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     for path in &args.logs {
         bar.set_message(format!("reading {}", path.display()));
         checked.push(read(path, args.mapping.as_deref(), &bar)?);
+    }
+    if !args.despite_problems {
+        refuse_problems(&checked)?;
     }
     let mut found = identify(checked.clone(), &options, &mut |step, share| {
         bar.set_position((100.0 * share) as u64);
@@ -117,12 +132,24 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     Ok(if damaged { Outcome::Damaged } else { Outcome::Done })
 }
 
+/// A log that contradicts itself would give a vehicle that is wrong.
+fn refuse_problems(logs: &[Quality]) -> Result<(), BadInput> {
+    for quality in logs {
+        let wrong = |finding: &&Finding| finding.severity == Severity::Problem && finding.stream != "file";
+        if let Some(finding) = quality.findings.iter().find(wrong) {
+            let expected = "a log without problems";
+            let advice = format!("{}, or use the log all the same with --despite-problems", finding.so);
+            return Err(BadInput::new(&quality.log.name, &finding.what, expected, advice));
+        }
+    }
+    Ok(())
+}
+
 fn options(args: &Args) -> Result<Options, BadInput> {
-    let full = args.full_rates.as_deref().map(|rates| std::array::from_fn(|k| rates[k].to_radians()));
     let options = Options {
         base: Vehicle::load(&args.base)?,
         mass_kg: args.mass,
-        max_rate_rad_s: full,
+        max_rate_rad_s: args.full_rates.map(|rates| rates.map(f64::to_radians)),
         rate_cutoff_hz: args.rate_cutoff,
         force_cutoff_hz: args.force_cutoff,
     };
@@ -184,7 +211,14 @@ fn text(found: &Identification) -> String {
     let assumed = if assumed.is_empty() { assumed } else { format!("\n\ntaken from the vehicle {base}{assumed}") };
     let remarks: String = found.remarks.iter().map(|remark| format!("\n  {remark}")).collect();
     let remarks = if remarks.is_empty() { remarks } else { format!("\n\nremarks{remarks}") };
-    format!("validated on the last 30 % of the flight\n\n{response}\n\n{values}{assumed}{remarks}")
+    let flown = found.flown.map_or(String::new(), |[low, high]| {
+        let ratio = found.vehicle.thrust_to_weight();
+        let beyond = if high < 0.9 { ", extrapolated" } else { "" };
+        format!(
+            "\n\nthrust command flown from {low:.2} to {high:.2} (-1 to 1); full thrust is {ratio:.1} times the weight{beyond}"
+        )
+    });
+    format!("validated on the last 30 % of the flight\n\n{response}\n\n{values}{flown}{assumed}{remarks}")
 }
 
 /// Value and interval, or why there is none.

@@ -3,6 +3,7 @@
 use crate::stats::robust_sd;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Residuals beyond so many standard deviations weigh less (Huber).
 const HUBER: f64 = 3.0;
@@ -27,7 +28,7 @@ pub struct Unknown {
 #[derive(Clone, Debug)]
 pub struct Solution {
     pub values: Vec<f64>,
-    /// Sandwich covariance over blocks; zero for values at a bound.
+    /// Covariance over blocks; zero for values at a bound.
     pub covariance: DMatrix<f64>,
     /// Whether a value ended at one of its bounds.
     pub at_bound: Vec<bool>,
@@ -53,7 +54,7 @@ pub fn solve(
     blocks: &[u32],
     residuals: &(dyn Fn(&[f64]) -> Vec<Vec<f64>> + Sync),
 ) -> Option<Solution> {
-    let stretches = blocks.iter().collect::<std::collections::BTreeSet<_>>().len();
+    let stretches = blocks.iter().collect::<BTreeSet<_>>().len();
     if stretches <= unknowns.len() {
         return None;
     }
@@ -68,7 +69,7 @@ pub fn solve(
     }
     let weights = Weights::of(&residuals(&values))?;
     let system = System::at(unknowns, &values, &weights, residuals)?;
-    let (covariance, at_bound) = system.sandwich(unknowns, &values, blocks, stretches)?;
+    let (covariance, at_bound) = system.jackknife(unknowns, &values, blocks)?;
     Some(Solution { values, covariance, at_bound, noise: weights.noise })
 }
 
@@ -157,30 +158,35 @@ impl<'a> System<'a> {
         DMatrix::from_fn(free.len(), free.len(), |i, j| self.normal[(free[i], free[j])])
     }
 
-    /// H^-1 (sum over blocks of U U') H^-1, with U a block's share of the gradient (Huber-White, clustered).
-    fn sandwich(
-        &self,
-        unknowns: &[Unknown],
-        values: &[f64],
-        blocks: &[u32],
-        stretches: usize,
-    ) -> Option<(DMatrix<f64>, Vec<bool>)> {
+    /// Covariance by leaving out one block after the other (the cluster jackknife, CR3): how far the values would move without
+    /// a block is (H - H_b)^-1 U_b, with H the normal equations and U the gradient. Unlike the sum of U U' alone it stays honest where
+    /// few blocks, such as the few yaw steps of a flight, hold most of what is known.
+    fn jackknife(&self, unknowns: &[Unknown], values: &[f64], blocks: &[u32]) -> Option<(DMatrix<f64>, Vec<bool>)> {
         let free = self.free(unknowns, values);
         let n = free.len();
-        let mut shares: std::collections::BTreeMap<u32, DVector<f64>> = std::collections::BTreeMap::new();
+        let mut shares: BTreeMap<u32, (DMatrix<f64>, DVector<f64>)> = BTreeMap::new();
         for (c, residuals) in self.residuals.iter().enumerate() {
             for (i, r) in residuals.iter().enumerate() {
-                let share = shares.entry(blocks[i]).or_insert_with(|| DVector::<f64>::zeros(n));
-                for (row, &k) in free.iter().enumerate() {
-                    share[row] += self.weights.of[c][i] * self.slopes[k][c][i] * r;
+                let (normal, gradient) =
+                    shares.entry(blocks[i]).or_insert_with(|| (DMatrix::zeros(n, n), DVector::zeros(n)));
+                for row in 0..n {
+                    let weighted = self.weights.of[c][i] * self.slopes[free[row]][c][i];
+                    gradient[row] += weighted * r;
+                    for column in 0..=row {
+                        normal[(row, column)] += weighted * self.slopes[free[column]][c][i];
+                    }
                 }
             }
         }
-        let inverse = scaled_inverse(self.part(&free))?;
-        let spread = shares.values().map(|u| u * u.transpose()).fold(DMatrix::zeros(n, n), |sum, x| sum + x);
-        // Fitted residuals are smaller than the true ones.
-        let correction = stretches as f64 / (stretches - n) as f64;
-        let inner = &inverse * spread * &inverse * correction;
+        let whole = self.part(&free);
+        let everything = scaled_inverse(whole.clone())?;
+        let mut inner = DMatrix::zeros(n, n);
+        for (normal, gradient) in shares.values() {
+            let rest = DMatrix::from_fn(n, n, |i, j| whole[(i, j)] - normal[(i.max(j), i.min(j))]);
+            // A block without which nothing can be told counts as it is.
+            let moved = scaled_inverse(rest).unwrap_or_else(|| everything.clone()) * gradient;
+            inner += &moved * moved.transpose();
+        }
         let mut covariance = DMatrix::zeros(values.len(), values.len());
         for (row, &i) in free.iter().enumerate() {
             for (column, &j) in free.iter().enumerate() {
@@ -195,6 +201,9 @@ impl<'a> System<'a> {
 /// Inverse of a symmetric positive matrix, by way of its correlation form: the unknowns differ in scale by orders.
 fn scaled_inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale = matrix.diagonal().map(|d| 1.0 / d.sqrt());
+    if scale.iter().any(|s| !s.is_finite()) {
+        return None;
+    }
     let form = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] * scale[i] * scale[j]);
     let inverse = form.try_inverse()?;
     Some(DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| inverse[(i, j)] * scale[i] * scale[j]))

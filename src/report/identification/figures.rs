@@ -55,13 +55,13 @@ fn signals(area: &DrawingArea<SVGBackend, Shift>, channel: &Channel) -> anyhow::
     let (all, border) = joined(channel);
     let shown: Vec<[f64; 3]> = all.into_iter().filter(|p| (p[0] - border).abs() <= 5.0).collect();
     let mut chart = ChartBuilder::on(area)
-        .caption(&channel.name, ("sans-serif", 18))
+        .caption(format!("{}: ten seconds around the border", channel.name), ("sans-serif", 18))
         .margin(8)
         .x_label_area_size(30)
         .y_label_area_size(64)
         .build_cartesian_2d(border - 5.0..border + 5.0, range(shown.iter().flat_map(|p| [p[1], p[2]])))
         .map_err(drawing)?;
-    mesh(&mut chart, channel.unit)?;
+    mesh(&mut chart, "", channel.unit)?;
     for (k, name, colour, width) in [(1, "measured", MEASURED, 2), (2, "predicted", PREDICTED, 1)] {
         let step = shown.len().div_ceil(POINTS).max(1);
         chart
@@ -93,8 +93,7 @@ fn residual(area: &DrawingArea<SVGBackend, Shift>, channel: &Channel) -> anyhow:
         .y_label_area_size(64)
         .build_cartesian_2d(0.0..end, range(points.iter().map(|p| p.1)))
         .map_err(drawing)?;
-    chart.configure_mesh().x_desc("usable flight, s").draw().map_err(drawing)?;
-    mesh(&mut chart, &format!("residual, {}", channel.unit))?;
+    mesh(&mut chart, "usable flight, s", &format!("residual, {}", channel.unit))?;
     chart.draw_series(LineSeries::new(points, BLACK.mix(0.7))).map_err(drawing)?;
     divide(&mut chart, border)
 }
@@ -105,13 +104,15 @@ type Chart<'a, 'b> = ChartContext<
     Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
 >;
 
-fn mesh(chart: &mut Chart, y: &str) -> anyhow::Result<()> {
+fn mesh(chart: &mut Chart, x: &str, y: &str) -> anyhow::Result<()> {
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.08))
         .label_style(("sans-serif", 14))
+        .x_desc(x)
         .y_desc(y)
+        .y_labels(6)
         .draw()
         .map_err(drawing)
 }
