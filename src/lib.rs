@@ -18,9 +18,10 @@ pub mod stats;
 pub mod dynamics;
 pub mod track;
 pub mod vehicle;
-// Batches of vehicles, networks, flight logs.
+// Batches of vehicles, networks, flight logs, the excitation pilot.
 pub mod flight;
 pub mod nn;
+pub mod pilot;
 pub mod policy;
 pub mod sim;
 // The race, learning it, scoring it.

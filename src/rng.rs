@@ -21,6 +21,10 @@ pub enum Stream {
     Weights = 5,
     /// Start states and vehicle parameters of an evaluation.
     Evaluation = 6,
+    /// Order and sizes of the excitation pilot's manoeuvres.
+    Pilot = 7,
+    /// Noise and bias of recorded flights.
+    Sensors = 8,
 }
 
 /// The generator's key.
