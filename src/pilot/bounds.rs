@@ -16,6 +16,9 @@ const MARGIN_M: f64 = 8.0;
 const BRAKING: f64 = 6.0;
 /// Time that a vehicle goes on before it begins to brake, s.
 const REACTION_S: f64 = 0.35;
+/// Time for which thrust goes on after the throttle is closed, s, and the deceleration of a climb with what idle leaves, m/s2.
+const CLOSING_S: f64 = 0.05;
+const IDLE_SINK: f64 = 0.7 * GRAVITY;
 
 /// Whether the vehicle would leave the box unless it is stopped now.
 pub fn leaves(view: &View, limits: &Limits) -> bool {
@@ -25,7 +28,7 @@ pub fn leaves(view: &View, limits: &Limits) -> bool {
         // Only where it is going, so that a manoeuvre may lead back in.
         stop.abs() > REACH_M - MARGIN_M && stop * v[i] > 0.0
     });
-    aside || lowest(view, limits) < HEIGHT_M[0] + 0.5 * MARGIN_M || highest(view) > HEIGHT_M[1] - MARGIN_M
+    aside || lowest(view, limits) < HEIGHT_M[0] + 0.5 * MARGIN_M || highest(view, limits) > HEIGHT_M[1] - MARGIN_M
 }
 
 /// Height at which a fall would end with the thrust that there is.
@@ -38,8 +41,9 @@ fn lowest(view: &View, limits: &Limits) -> f64 {
     view.position.z + view.velocity.z * time - 0.5 * GRAVITY * time * time - stopping
 }
 
-/// Height at which a climb without thrust would end, but for drag.
-fn highest(view: &View) -> f64 {
-    let climb = view.velocity.z.max(0.0);
-    view.position.z + 0.1 * climb + climb * climb / (2.0 * GRAVITY)
+/// Height at which a climb would end if the throttle were closed now, but for drag.
+fn highest(view: &View, limits: &Limits) -> f64 {
+    let spare = 2.0 / (1.0 + limits.hover_command) - 1.0;
+    let climb = (view.velocity.z + GRAVITY * spare * CLOSING_S).max(0.0);
+    view.position.z + climb * climb / (2.0 * IDLE_SINK)
 }

@@ -1,15 +1,15 @@
 //! Drag of an ellipsoid in still air.
 
 use super::vehicle::Vehicle;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use std::f64::consts::PI;
 
 /// Area of the silhouette along the unit vector `n`, m2. The ellipsoid is the sphere of radius 1 mapped by
 /// A = diag(semi-axes); a plane's area maps by the cofactors, so the disk of area pi becomes pi |cof(A) n|.
 pub fn silhouette(semi_axes: [f64; 3], n: &Vector3<f64>) -> f64 {
-    let map = Matrix3::from_diagonal(&Vector3::from(semi_axes));
-    let cofactors = map.determinant() * map.try_inverse().expect("axes above zero").transpose();
-    PI * (cofactors * n).norm()
+    let [a, b, c] = semi_axes;
+    let cofactors = Vector3::new(b * c, c * a, a * b);
+    PI * cofactors.component_mul(n).norm()
 }
 
 /// Drag over mass, body frame, m/s2, at the body-frame velocity through the air.
