@@ -148,8 +148,11 @@ impl Pilot {
 
     fn plan(&mut self, view: &View) -> Plan {
         if self.deck.is_empty() {
-            self.deck.clone_from(&self.kinds);
-            self.rng.shuffle(&mut self.deck);
+            let (mut early, mut late): (Vec<_>, Vec<_>) = self.kinds.iter().partition(|kind| kind.early());
+            self.rng.shuffle(&mut early);
+            self.rng.shuffle(&mut late);
+            // Drawn from the end.
+            self.deck = [late, early].concat();
         }
         // The deck was just filled, and never with nothing.
         let kind = self.deck.pop().unwrap_or(Kind::RateSteps);

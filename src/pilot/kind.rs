@@ -89,4 +89,23 @@ impl Kind {
     pub fn named(name: &str) -> Option<Kind> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
+
+    /// Whether it is flown in the first half of a round. Each half covers every axis, the throttle and the speeds, so
+    /// that no part of a flight goes without.
+    pub fn early(self) -> bool {
+        matches!(
+            self,
+            Kind::RollSteps
+                | Kind::YawSteps
+                | Kind::PitchDoublets
+                | Kind::RollFlip
+                | Kind::ThrottleSteps
+                | Kind::Chop
+                | Kind::RampUp
+                | Kind::Forward
+                | Kind::Left
+                | Kind::Climb
+                | Kind::Dive
+        )
+    }
 }

@@ -43,7 +43,7 @@ impl Plan {
             }
             Kind::RollFlip | Kind::PitchFlip => {
                 let axis = kind as usize - Kind::RollFlip as usize;
-                let script = Flip::new(axis, sign * size(0.6), rng.uniform([-1.0, limits.hover_command]));
+                let script = Flip::new(axis, sign * size(0.85), rng.uniform([-1.0, limits.hover_command]));
                 over_spot(view, rng.uniform([38.0, 60.0]), Box::new(script))
             }
             Kind::YawSpin => {
@@ -75,7 +75,7 @@ impl Plan {
                 };
                 let speed = FASTEST * size(0.7);
                 let height = rng.uniform([22.0, 58.0]);
-                across(view, height, nose, rng, Course::new(speed, 0.0, 0.0, 3.6))
+                across(view, height, nose, rng, Course::new(speed, 0.0, 0.0, 3.2))
             }
             Kind::Climb | Kind::Descent => {
                 let (height, vertical) = match kind {
@@ -83,16 +83,16 @@ impl Plan {
                     _ => (70.0, -14.0 * size(0.3)),
                 };
                 let aside = rng.uniform([0.0, 6.0]);
-                across(view, height, 0.0, rng, Course::new(aside, vertical, 0.0, 4.5))
+                across(view, height, 0.0, rng, Course::new(aside, vertical, 0.0, 3.8))
             }
             Kind::Dive => {
                 let (speed, vertical) = (FASTEST * size(0.5), -rng.uniform([5.0, 12.0]));
-                across(view, 66.0, 0.0, rng, Course::new(speed, vertical, 0.0, 3.6))
+                across(view, 66.0, 0.0, rng, Course::new(speed, vertical, 0.0, 3.2))
             }
             Kind::Circle => {
                 let (speed, radius) = (rng.uniform([10.0, 16.0]), rng.uniform([18.0, 28.0]));
                 let turn = sign * speed / radius;
-                across(view, rng.uniform([25.0, 55.0]), 0.0, rng, Course::new(speed, 0.0, turn, 4.5))
+                across(view, rng.uniform([25.0, 55.0]), 0.0, rng, Course::new(speed, 0.0, turn, 4.0))
             }
         }
     }
@@ -103,7 +103,7 @@ impl Plan {
         let way = self.station - view.position;
         let turned = self.heading.map_or(0.0, |heading| wrapped(heading - view.heading()).abs());
         let there = way.xy().norm() < 12.0 && way.z.abs() < 5.0 && turned < 0.25;
-        let calm = view.velocity.norm() < 2.5 && view.tilt() < 0.25 && view.rates.norm() < 0.6;
+        let calm = view.velocity.norm() < 3.5 && view.tilt() < 0.3 && view.rates.norm() < 0.8;
         if calm && (there || now.time > APPROACH_S) {
             return None;
         }

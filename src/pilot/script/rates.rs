@@ -37,7 +37,7 @@ impl RateSteps {
             1 => (-vertical.x).atan2(vertical.z),
             _ => 0.0,
         };
-        let mut value = rng.uniform([0.25, 1.0]) * if rng.unit() < 0.5 { 1.0 } else { -1.0 };
+        let mut value = rng.uniform([0.25, 1.25]).min(1.0) * if rng.unit() < 0.5 { 1.0 } else { -1.0 };
         let turn = value * now.limits.max_rate_rad_s[axis] * seconds;
         if axis < 2 && (angle + turn).abs() > TILTED && turn * angle > 0.0 {
             value = -value;

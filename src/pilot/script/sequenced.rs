@@ -24,7 +24,7 @@ pub struct Sequenced {
 /// Sizes of the doublets of one manoeuvre, shares of the full rate.
 const SIZES: [f64; 3] = [0.3, 0.6, 1.0];
 /// Angle that each half of a doublet turns through, rad, and the shortest and longest that a half lasts, s.
-const HALF_RAD: f64 = 0.8;
+const HALF_RAD: f64 = 1.1;
 const HALF_S: [f64; 2] = [0.03, 0.3];
 
 impl Sequenced {

@@ -13,7 +13,7 @@ pub struct ThrottleSteps {
 }
 
 /// How long they go on, s.
-const STEPS_S: f64 = 3.5;
+const STEPS_S: f64 = 2.8;
 /// Shortest and longest time that one is held, s.
 const HOLD_S: [f64; 2] = [0.03, 0.4];
 /// Vertical speed beyond which steps lead back, m/s, and the most that one step adds.
