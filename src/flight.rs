@@ -2,6 +2,7 @@
 //!
 //! A file is read into tables of named columns ([`table`]), and a mapping ([`mapping`]) says what the columns mean.
 
+pub mod sensors;
 pub mod table;
 
 /// Numbers over time: row i was measured at `time_s[i]`. NaN stands for what was not measured.

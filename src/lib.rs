@@ -24,9 +24,10 @@ pub mod nn;
 pub mod pilot;
 pub mod policy;
 pub mod sim;
-// The race, learning it, scoring it.
+// The race, learning it, scoring it, recording it.
 pub mod env;
 pub mod eval;
+pub mod fly;
 pub mod ppo;
 // Keeping, measuring, showing.
 pub mod bench;

@@ -131,6 +131,11 @@ impl Pilot {
         }
     }
 
+    /// Whether it is back on the ground for good.
+    pub fn landed(&self) -> bool {
+        matches!(self.phase, Phase::Landed)
+    }
+
     /// The phase after this one.
     fn next(&mut self, view: &View) -> Phase {
         let over = view.time > self.limits.seconds - LANDING_S || view.voltage < self.limits.empty_v;
