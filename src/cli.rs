@@ -2,6 +2,7 @@
 
 mod bench;
 mod eval;
+mod fly;
 mod interrupt;
 mod pool;
 mod progress;
@@ -25,6 +26,7 @@ struct Cli {
 enum Command {
     Train(train::Args),
     Eval(eval::Args),
+    Fly(fly::Args),
     Bench(bench::Args),
 }
 
@@ -61,6 +63,7 @@ pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Train(args) => train::run(&args),
         Command::Eval(args) => eval::run(&args),
+        Command::Fly(args) => fly::run(&args),
         Command::Bench(args) => bench::run(&args),
     };
     let code = result.map(Outcome::code).unwrap_or_else(|error| {

@@ -3,6 +3,7 @@
 use crate::check::{Check, Invalid};
 use crate::dynamics::Factors;
 use crate::rng::Sequence;
+use crate::vehicle::Vehicle;
 use serde::{Deserialize, Serialize};
 
 /// Ranges `[low, high]`, drawn evenly and independently for each episode. Factors multiply the nominal value; `[1, 1]`
@@ -38,6 +39,17 @@ impl Check for RandomizeConfig {
 }
 
 impl RandomizeConfig {
+    /// The same spread for `other` in place of `vehicle`, with batteries as full as these would be.
+    pub fn charged_as(&self, vehicle: &Vehicle, other: &Vehicle) -> Self {
+        let (from, to) = (&vehicle.battery, &other.battery);
+        if (from.full_v, from.empty_v) == (to.full_v, to.empty_v) {
+            return self.clone();
+        }
+        let scale = (to.full_v - to.empty_v) / (from.full_v - from.empty_v);
+        let voltage_v = self.voltage_v.map(|v| to.empty_v + (v - from.empty_v) * scale);
+        Self { voltage_v, ..self.clone() }
+    }
+
     /// Draws all factors of one episode.
     pub fn draw(&self, rng: &mut Sequence) -> Factors {
         Factors {
