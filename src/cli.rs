@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod eval;
 mod findings;
+mod fly;
 mod identify;
 mod import;
 mod interrupt;
@@ -29,6 +30,7 @@ struct Cli {
 enum Command {
     Train(train::Args),
     Eval(eval::Args),
+    Fly(fly::Args),
     Import(import::Args),
     Check(check::Args),
     Identify(identify::Args),
@@ -71,6 +73,7 @@ pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Train(args) => train::run(&args),
         Command::Eval(args) => eval::run(&args),
+        Command::Fly(args) => fly::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Import(args) => import::run(&args),

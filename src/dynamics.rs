@@ -12,7 +12,7 @@ pub mod thrust;
 
 use crate::lane::{Lane, Real, build};
 use crate::vehicle::Vehicle;
-use attitude::{Quaternion, body_axes, compose, small_rotation};
+use attitude::{Quaternion, body_axes, compose, dot, small_rotation};
 
 /// State of one vehicle (paper Eq. 5). Body rates are not kept: they are `command * max_rate`.
 #[derive(Clone, Copy, Debug)]
@@ -146,6 +146,15 @@ impl<R: Real> State<R> {
     pub fn body_rates(&self, p: &Parameters<R>) -> [R; 3] {
         build!(|i| self.command[i] * p.max_rate[i])
     }
+}
+
+/// Thrust and drag over the mass, body frame, m/s2: what an accelerometer at the centre of mass measures.
+#[inline(always)]
+pub fn specific_force<R: Real>(s: &State<R>, p: &Parameters<R>) -> [R; 3] {
+    let axes = body_axes(s.attitude);
+    let damping = drag::damping(&p.drag, &axes, s.velocity);
+    let [x, y, z]: [R; 3] = build!(|i| -damping * dot(axes[i], s.velocity));
+    [x, y, z + thrust::specific_thrust(&p.thrust, s.command[3], s.voltage)]
 }
 
 /// One step under the held command `action`.

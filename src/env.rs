@@ -168,6 +168,11 @@ impl Race {
         }
     }
 
+    /// The race as a policy sees it that was trained with `vehicle`, whatever flies.
+    pub fn seen_as(self, vehicle: &Vehicle) -> Self {
+        Race { voltage_scale: observe::voltage_scale(&vehicle.battery), ..self }
+    }
+
     /// The race as a lap is scored: full apertures, nothing disturbed.
     pub fn scored(&self, track: &Track) -> Self {
         Race { gates: gates::frames(track, None), noisy: false, ..self.clone() }

@@ -9,6 +9,7 @@ pub mod mapping;
 pub mod mcap;
 mod open;
 pub mod quality;
+pub mod sensors;
 pub mod series;
 pub mod spans;
 pub mod table;

@@ -18,15 +18,16 @@ pub mod stats;
 pub mod dynamics;
 pub mod track;
 pub mod vehicle;
-// Batches of vehicles, networks, flight logs.
+// Batches of vehicles, networks, flight logs, the excitation pilot.
 pub mod flight;
 pub mod nn;
 pub mod pilot;
 pub mod policy;
 pub mod sim;
-// The race, learning it, scoring it; the vehicle from its flights.
+// The race, learning it, scoring it, recording it; the vehicle from its flights.
 pub mod env;
 pub mod eval;
+pub mod fly;
 pub mod identify;
 pub mod ppo;
 // Keeping, measuring, showing.

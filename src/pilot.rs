@@ -1,126 +1,190 @@
-//! A pilot who flies what identification needs: sharp steps on every stick, the whole throttle range, fast passes in every
-//! direction, climbs and descents, again and again while the battery empties.
+//! The excitation pilot: flies short manoeuvres that together show a vehicle's response, thrust, drag and battery.
 //!
-//! Short manoeuvres follow each other at random; between them, and whenever the box or the ground comes near, the pilot
-//! recovers to its middle.
+//! It rests on the ground, takes off, then by turns flies to where a manoeuvre begins and flies it, until it lands. The
+//! manoeuvres come in rounds of random order, so that each is flown at high and at low voltage. It knows a vehicle by
+//! its limits only, and keeps within [`bounds`].
 
-mod manoeuvre;
-mod stabilise;
+pub mod bounds;
+mod cascade;
+pub mod kind;
+mod plan;
+mod script;
+mod view;
 
 use crate::rng::{Philox, Sequence, Stream};
-pub use manoeuvre::Kind;
-use manoeuvre::Manoeuvre;
-use stabilise::Stabiliser;
+use cascade::{Cascade, Demand};
+pub use kind::Kind;
+use nalgebra::Vector3;
+use plan::Plan;
+use script::Now;
+use view::View;
 
-/// What the pilot sees of the vehicle.
+/// What the pilot sees: position (m) and velocity (m/s) in the world, attitude (body to world, w x y z), body rates
+/// (rad/s), voltage (V).
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// Since the start, s.
     pub time_s: f64,
-    /// World, m and m/s.
     pub position: [f64; 3],
     pub velocity: [f64; 3],
-    /// Body to world, w x y z.
     pub attitude: [f64; 4],
+    pub rates: [f64; 3],
+    pub voltage: f64,
 }
 
-/// What the pilot knows of the vehicle beforehand, roughly.
+/// What the pilot knows of the vehicle and the flight.
 #[derive(Clone, Copy, Debug)]
-pub struct Known {
-    /// Roll, pitch, yaw rate at full stick, rad/s.
+pub struct Limits {
+    /// Body rates at full stick, rad/s.
     pub max_rate_rad_s: [f64; 3],
-    /// Thrust command that carries it, -1..1.
-    pub hover: f64,
-    /// Thrust at full command over weight.
-    pub thrust_to_weight: f64,
+    /// Thrust command that about carries the vehicle, -1..1.
+    pub hover_command: f64,
+    /// When it is to be back on the ground, s.
+    pub seconds: f64,
+    /// Voltage at which it lands earlier, V.
+    pub empty_v: f64,
 }
 
-/// Time on the ground before take-off, s.
-pub const GROUND_S: f64 = 2.0;
-/// The middle of the box, m.
-const MIDDLE: [f64; 3] = [0.0, 0.0, 35.0];
-/// Beyond these the pilot breaks off: distance from the middle in the plane, lowest and highest height, m.
-const WIDE: f64 = 70.0;
-const LOW: f64 = 14.0;
-const HIGH: f64 = 65.0;
-/// A manoeuvre begins when slower than this and more upright than this (cosine of the tilt).
-const CALM_M_S: f64 = 3.0;
-const CALM_UPRIGHT: f64 = 0.93;
+/// Time on the ground before taking off, s.
+const GROUND_S: f64 = 2.0;
+/// Height at which the first manoeuvre is planned, m.
+const TAKEN_OFF_M: f64 = 12.0;
+/// Time kept for the landing, s.
+const LANDING_S: f64 = 14.0;
+/// Height over the ground at which the throttle is closed, m.
+const TOUCH_M: f64 = 0.15;
 
-/// The pilot; ask it for a command 100 times a second.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
+enum Phase {
+    Ground,
+    TakeOff,
+    /// On the way to where the manoeuvre begins.
+    Approach(Plan),
+    Manoeuvre(Plan),
+    Landing,
+    Landed,
+}
+
+/// See the module.
+#[derive(Debug)]
 pub struct Pilot {
-    rng: Sequence,
-    stabiliser: Stabiliser,
-    known: Known,
+    limits: Limits,
     kinds: Vec<Kind>,
-    next: usize,
-    flying: Option<Manoeuvre>,
+    /// Kinds left of this round, last first.
+    deck: Vec<Kind>,
+    /// How often each kind was planned.
+    flown: [usize; Kind::ALL.len()],
+    rng: Sequence,
+    cascade: Cascade,
+    /// Where the first command was asked for: the origin of its box.
+    origin: Option<Vector3<f64>>,
+    phase: Phase,
+    /// Since when, s.
+    since: f64,
+    before: f64,
 }
 
 impl Pilot {
-    /// A pilot who flies all kinds of manoeuvres in turn.
-    pub fn new(seed: u64, known: Known) -> Self {
-        Self::of(seed, known, &Kind::ALL)
+    /// A pilot that flies all kinds of manoeuvres; `seed` decides their order and sizes.
+    pub fn new(seed: u64, limits: Limits) -> Self {
+        Self {
+            limits,
+            kinds: Kind::ALL.to_vec(),
+            deck: Vec::new(),
+            flown: [0; Kind::ALL.len()],
+            rng: Philox::new(seed).sequence(Stream::Pilot, 0, 0),
+            cascade: Cascade::new(&limits),
+            origin: None,
+            phase: Phase::Ground,
+            since: 0.0,
+            before: f64::NEG_INFINITY,
+        }
     }
 
-    /// A pilot who flies these kinds in turn.
-    ///
-    /// # Panics
-    /// If there are none.
-    pub fn of(seed: u64, known: Known, kinds: &[Kind]) -> Self {
-        assert!(!kinds.is_empty(), "a pilot needs something to fly");
-        let rng = Philox::new(seed).sequence(Stream::Pilot, 0, 0);
-        Self { rng, stabiliser: Stabiliser::new(known), known, kinds: kinds.into(), next: 0, flying: None }
+    /// Flies `kinds` only; all of them where none is named.
+    pub fn only(mut self, kinds: &[Kind]) -> Self {
+        if !kinds.is_empty() {
+            self.kinds = kinds.to_vec();
+        }
+        self
     }
 
-    /// Roll, pitch, yaw rate and thrust, each in [-1, 1].
+    /// The command for the next 10 ms: roll, pitch, yaw rate and thrust, each in [-1, 1].
     pub fn command(&mut self, seen: &Seen) -> [f64; 4] {
-        if seen.time_s < GROUND_S {
-            return [0.0, 0.0, 0.0, -1.0];
+        if self.origin.is_none() {
+            self.since = seen.time_s;
         }
-        if self.in_danger(seen) {
-            self.flying = None;
+        let origin = *self.origin.get_or_insert(Vector3::from(seen.position));
+        let view = View::new(seen, origin);
+        let dt = (seen.time_s - self.before).clamp(0.0, 0.1);
+        self.before = seen.time_s;
+        loop {
+            let time = seen.time_s - self.since;
+            let now = Now { time, dt, view: &view, limits: &self.limits };
+            if let Some(demand) = self.phase.demand(&now, &mut self.rng) {
+                return match demand {
+                    Some(demand) => self.cascade.command(&view, &demand, dt),
+                    None => [0.0, 0.0, 0.0, -1.0],
+                };
+            }
+            self.phase = self.next(&view);
+            self.since = seen.time_s;
         }
-        if self.flying.as_ref().is_some_and(|manoeuvre| seen.time_s >= manoeuvre.until_s) {
-            self.flying = None;
+    }
+
+    /// Whether it is back on the ground for good.
+    pub fn landed(&self) -> bool {
+        matches!(self.phase, Phase::Landed)
+    }
+
+    /// The phase after this one.
+    fn next(&mut self, view: &View) -> Phase {
+        let over = view.time > self.limits.seconds - LANDING_S || view.voltage < self.limits.empty_v;
+        match std::mem::replace(&mut self.phase, Phase::Landed) {
+            Phase::Ground => Phase::TakeOff,
+            Phase::Landing | Phase::Landed => Phase::Landed,
+            _ if over => Phase::Landing,
+            Phase::Approach(plan) => Phase::Manoeuvre(plan),
+            Phase::TakeOff | Phase::Manoeuvre(_) => {
+                self.cascade.settle();
+                Phase::Approach(self.plan(view))
+            }
         }
-        if self.flying.is_none() && self.calm(seen) {
-            let kind = self.kinds[self.next % self.kinds.len()];
-            self.next += 1;
-            self.flying = Some(Manoeuvre::begin(kind, seen, &self.known, &mut self.rng));
+    }
+
+    fn plan(&mut self, view: &View) -> Plan {
+        if self.deck.is_empty() {
+            let (mut early, mut late): (Vec<_>, Vec<_>) = self.kinds.iter().partition(|kind| kind.early());
+            self.rng.shuffle(&mut early);
+            self.rng.shuffle(&mut late);
+            // Drawn from the end.
+            self.deck = [late, early].concat();
         }
-        let command = match &mut self.flying {
-            Some(manoeuvre) => manoeuvre.command(seen, &mut self.stabiliser, &mut self.rng),
-            None => self.recover(seen),
+        // The deck was just filled, and never with nothing.
+        let kind = self.deck.pop().unwrap_or(Kind::RateSteps);
+        let time = &mut self.flown[kind as usize];
+        *time += 1;
+        Plan::new(kind, *time - 1, view, &self.limits, &mut self.rng)
+    }
+}
+
+impl Phase {
+    /// What the phase asks for, `Some(None)` for resting on the ground, or `None` where it is over.
+    fn demand(&mut self, now: &Now, rng: &mut Sequence) -> Option<Option<Demand>> {
+        let view = now.view;
+        let over = view.time > now.limits.seconds - LANDING_S || view.voltage < now.limits.empty_v;
+        let demand = match self {
+            Phase::Ground if now.time < GROUND_S => return Some(None),
+            Phase::Ground => None,
+            Phase::Landed => return Some(None),
+            Phase::Landing if view.position.z < TOUCH_M => None,
+            Phase::Landing => Some(Demand::at(Vector3::new(0.0, 0.0, -(0.5 + 0.4 * view.position.z).min(9.0)))),
+            _ if over => None,
+            Phase::TakeOff if view.position.z > TAKEN_OFF_M => None,
+            Phase::TakeOff => Some(Demand::at(Vector3::new(0.0, 0.0, 4.0))),
+            Phase::Approach(plan) => plan.approach(now),
+            Phase::Manoeuvre(_) if bounds::leaves(view, now.limits) => None,
+            Phase::Manoeuvre(plan) => plan.script.demand(now, rng),
         };
-        command.map(|x| x.clamp(-1.0, 1.0))
-    }
-
-    fn recover(&mut self, seen: &Seen) -> [f64; 4] {
-        let to: [f64; 3] = std::array::from_fn(|k| 0.8 * (MIDDLE[k] - seen.position[k]));
-        let speed = to[0].hypot(to[1]).max(1e-9);
-        let slower = (12.0 / speed).min(1.0);
-        self.stabiliser.velocity(seen, [to[0] * slower, to[1] * slower, to[2].clamp(-6.0, 8.0)], None)
-    }
-
-    fn calm(&self, seen: &Seen) -> bool {
-        let speed = seen.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let inside =
-            seen.position[0].hypot(seen.position[1]) < 0.5 * WIDE && (seen.position[2] - MIDDLE[2]).abs() < 8.0;
-        speed < CALM_M_S && stabilise::upright(seen) > CALM_UPRIGHT && inside
-    }
-
-    /// Whether the vehicle would leave the box if it went on for the time that a turn to safety takes.
-    fn in_danger(&self, seen: &Seen) -> bool {
-        let ahead = |k: usize, seconds: f64| seen.position[k] + seconds * seen.velocity[k];
-        let [x, y] = [ahead(0, 1.0), ahead(1, 1.0)];
-        // Turning upright, then braking with what thrust is left over the weight.
-        let brake = 0.6 * 9.81 * (self.known.thrust_to_weight - 1.0);
-        let fall = (-seen.velocity[2]).max(0.0);
-        let low = ahead(2, 0.7) - fall * fall / (2.0 * brake);
-        let climb = seen.velocity[2].max(0.0);
-        let high = ahead(2, 0.3) + climb * climb / (2.0 * 9.0);
-        x.hypot(y) > WIDE || low < LOW || high > HIGH
+        demand.map(Some)
     }
 }

@@ -21,8 +21,10 @@ pub enum Stream {
     Weights = 5,
     /// Start states and vehicle parameters of an evaluation.
     Evaluation = 6,
-    /// Sizes and directions of a pilot's manoeuvres.
+    /// Order and sizes of the excitation pilot's manoeuvres.
     Pilot = 7,
+    /// Noise and bias of recorded flights.
+    Sensors = 8,
 }
 
 /// The generator's key.

@@ -84,7 +84,7 @@ fn stamp(time: SystemTime) -> String {
 }
 
 /// A name reduced to what every file system takes.
-fn plain(name: &str) -> String {
+pub fn plain(name: &str) -> String {
     let kept = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' };
     name.chars().map(kept).take(40).collect()
 }

@@ -127,6 +127,11 @@ fn eval_prints_writes_and_judges() {
     // The training's own evaluation said the same.
     assert_eq!(json(&folder.path().join("e.json"))["fixed"], json(&folder.path().join("run/evaluation.json"))["fixed"]);
 
+    let other = racer(folder.path(), &["eval", "run", "--vehicle", "a2rl_class", "--agents", "3"]);
+    assert!(other.code == 0 && other.out.contains("in a2rl_class"), "{}", other.err);
+    let other = json(&folder.path().join("run/evaluation-a2rl_class-both-3.json"));
+    assert!(other["vehicle"] == "a2rl_class" && other["trained_vehicle"] == "seed_class", "{other}");
+
     let unmet = racer(folder.path(), &["eval", "run", "--require", "0.95"]);
     assert_eq!(unmet.code, 4, "{}", unmet.err);
     assert!(unmet.err.contains("95.0 % are required"));
@@ -170,7 +175,18 @@ fn bad_input_is_refused_before_any_work() {
         (&["eval", "full"], &["full", "policy.safetensors"]),
         (&["eval", "nowhere", "--start", "random", "--require", "0.9"], &["--require", "fixed starts"]),
         (&["bench", "--seconds", "-1"], &["--seconds"]),
-        (&["fly"], &["fly"]),
+        (&["eval", "nowhere", "--vehicle"], &["--vehicle"]),
+        (&["fly", "--out", "log.mcap"], &["--pilot"]),
+        (&["fly", "--pilot"], &["--out"]),
+        (&["fly", "nowhere", "--pilot", "--out", "log.mcap"], &["--pilot"]),
+        (&["fly", "nowhere", "--out", "log.mcap"], &["nowhere", "a run folder"]),
+        (&["fly", "--pilot", "--out", "full/precious"], &["full/precious", "nothing existing is overwritten"]),
+        (&["fly", "--pilot", "--out", "none/log.mcap"], &["none/log.mcap", "choose another path"]),
+        (&["fly", "--pilot", "--sensors", "idael", "--out", "log.mcap"], &["sensors `idael`", "`ideal`"]),
+        (&["fly", "--pilot", "--vehicle", "kite", "--out", "log.mcap"], &["vehicle `kite`"]),
+        (&["fly", "--pilot", "--manoeuvres", "punhc", "--out", "log.mcap"], &["punhc", "`punch`"]),
+        (&["fly", "--pilot", "--seconds", "5", "--out", "log.mcap"], &["--seconds", "40 s"]),
+        (&["fly", "--pilot", "--seconds", "-5", "--out", "log.mcap"], &["--seconds", "0.1 to 3600"]),
     ] {
         let ran = racer(folder.path(), args);
         assert_eq!(ran.code, 2, "{args:?}: {}", ran.err);
@@ -179,7 +195,7 @@ fn bad_input_is_refused_before_any_work() {
             assert!(ran.err.contains(part), "{args:?}: `{part}` is not in:\n{}", ran.err);
         }
     }
-    assert!(!folder.path().join("runs").exists());
+    assert!(!folder.path().join("runs").exists() && !folder.path().join("log.mcap").exists());
     assert_eq!(std::fs::read(folder.path().join("full/precious")).unwrap(), b"x");
 }
 
@@ -246,7 +262,7 @@ fn help_names_the_exit_codes() {
     assert!(ran.code == 0 && ran.out.contains("130") && ran.out.contains("--require"));
     let ran = racer(folder.path(), &["train", "--help"]);
     assert!(ran.out.contains("adam_epsilon") && ran.out.contains("budget"), "all keys are listed: {}", ran.out);
-    for command in ["train", "eval", "bench"] {
+    for command in ["train", "eval", "fly", "bench"] {
         assert_eq!(racer(folder.path(), &[command, "--help"]).code, 0);
     }
 }

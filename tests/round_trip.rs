@@ -33,8 +33,8 @@ fn options() -> Options {
 }
 
 fn fly_and_identify(seed: u64) -> (truth::Vehicle, Identification) {
-    let vehicle = truth::Vehicle::random(seed);
-    let quality = check(&truth::fly(&vehicle, seed, SECONDS, 1.0).log);
+    let vehicle = truth::Vehicle::draw(seed);
+    let quality = check(&truth::fly(&vehicle, seed, SECONDS, 1.0));
     let worst = quality.findings.iter().map(|finding| finding.severity).max();
     assert!(worst <= Some(Severity::Note), "nothing is wrong with this log: {:?}", quality.findings);
     (vehicle, identify(vec![quality], &options(), &mut |_, _| ()))
@@ -42,25 +42,26 @@ fn fly_and_identify(seed: u64) -> (truth::Vehicle, Identification) {
 
 fn judge(vehicle: &truth::Vehicle, found: &Identification) -> Vec<Judged> {
     let mut out = Vec::new();
+    let truth = vehicle.truth();
     let mut add = |name: String, estimate: &Estimate, truth: f64, limit: f64| {
         let value = estimate.value.unwrap_or(f64::NAN);
         let inside = estimate.interval().is_some_and(|[low, high]| (low..=high).contains(&truth));
         out.push(Judged { name, error: (value - truth) / truth, limit, inside });
     };
     for (k, axis) in ["roll", "pitch", "yaw", "thrust"].iter().enumerate() {
-        add(format!("tau {axis}"), &found.response[k].tau_s, vehicle.tau[k], 0.05);
+        add(format!("tau {axis}"), &found.response[k].tau_s, truth.time_constant_s[k], 0.05);
     }
     for (k, axis) in ["roll", "pitch", "yaw"].iter().enumerate() {
-        add(format!("rate {axis}"), &found.max_rate_rad_s[k], vehicle.max_rate[k], 0.01);
+        add(format!("rate {axis}"), &found.max_rate_rad_s[k], truth.max_rate_rad_s[k], 0.01);
     }
     for (k, axis) in ["x", "y", "z"].iter().enumerate() {
-        add(format!("drag {axis}"), &found.drag.k_1_m[k], vehicle.drag_over_mass()[k], 0.1);
+        add(format!("drag {axis}"), &found.drag.k_1_m[k], truth.drag_per_m[k], 0.1);
     }
     // Each coefficient has an interval; what counts is the curve, below.
     for k in 0..6 {
-        add(format!("thrust c{k}"), &found.thrust_n[k], vehicle.thrust[k], f64::INFINITY);
+        add(format!("thrust c{k}"), &found.thrust_n[k], vehicle.thrust_n[k], f64::INFINITY);
     }
-    add("discharge".into(), &found.battery.rate_v_s, vehicle.discharge, 0.02);
+    add("discharge".into(), &found.battery.rate_v_s, truth.voltage[1], 0.02);
     out.push(Judged { name: "thrust curve".into(), error: curve_error(vehicle, found), limit: 0.01, inside: true });
     out
 }
@@ -71,13 +72,13 @@ fn curve_error(vehicle: &truth::Vehicle, found: &Identification) -> f64 {
     let [from, to] = found.flown.unwrap();
     let mut worst: f64 = 0.0;
     for i in 0..=50 {
-        for volts in [vehicle.full_v, vehicle.full_v + SECONDS * vehicle.discharge] {
+        for volts in [vehicle.full_v, vehicle.full_v + SECONDS * vehicle.voltage_rate] {
             let u = from + (to - from) * f64::from(i) / 50.0;
             let thrust = c[0] + c[1] * u + c[2] * u.powi(2) + c[3] * u.powi(3) + c[4] * volts + c[5] * u * volts;
-            worst = worst.max((thrust / vehicle.mass - vehicle.push(u, volts)).abs());
+            worst = worst.max((thrust / vehicle.mass - truth::thrust::per_mass(vehicle, u, volts)).abs());
         }
     }
-    worst / vehicle.push(1.0, vehicle.full_v)
+    worst / truth::thrust::per_mass(vehicle, 1.0, vehicle.full_v)
 }
 
 #[test]

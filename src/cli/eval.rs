@@ -10,6 +10,7 @@ use crate::fsio::Reserved;
 use crate::lane::Level;
 use crate::run::{self, Found};
 use crate::snapshot::Snapshot;
+use crate::vehicle::Vehicle;
 use clap::ValueEnum;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,9 @@ pub struct Args {
     /// A run folder (its best policy), a snapshot file, or `latest` for the youngest run below runs/
     #[arg(value_name = "RUN|SNAPSHOT|latest")]
     policy: String,
+    /// Vehicle to fly in place of the one it was trained for: a name or a file
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<String>,
     /// Where the agents start: on the pad, along the track, or one after the other
     #[arg(long, value_enum, default_value_t = Start::Both)]
     start: Start,
@@ -33,7 +37,7 @@ pub struct Args {
     /// Print JSON in place of the table
     #[arg(long)]
     json: bool,
-    /// New file for the JSON [default: evaluation-START-AGENTS.json beside the policy]
+    /// New file for the JSON [default: evaluation-[VEHICLE-]START-AGENTS.json beside the policy]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Threads [default: all processors]; changes the speed, not the result
@@ -64,7 +68,9 @@ fn parse_share(text: &str) -> Result<f64, String> {
 struct File<'a> {
     snapshot: String,
     track: &'a str,
+    /// The vehicle that was flown, and the one that it was trained for.
     vehicle: &'a str,
+    trained_vehicle: &'a str,
     /// Steps it was trained for.
     steps: u64,
     seed: u64,
@@ -83,9 +89,12 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let Snapshot { network, about } = Snapshot::read(&found.snapshot)?;
     let mut config = about.eval.clone();
     config.agents = args.agents.map_or(config.agents, |agents| agents as usize);
-    let file = Reserved::new(&args.out.clone().unwrap_or_else(|| default_file(&found, args.start, config.agents)))?;
+    let other = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
+    let default = || default_file(&found, other.as_ref(), args.start, config.agents);
+    let file = Reserved::new(&args.out.clone().unwrap_or_else(default))?;
 
-    let race = Race::new(&about.env, &about.track, &about.vehicle, about.seed);
+    let vehicle = other.as_ref().unwrap_or(&about.vehicle);
+    let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
     let fly = |place| benchmark(Level::best(), &race, &about.track, &network, place, &config).0;
     let report = pool(threads(args.threads))?.install(|| Report {
         fixed: (args.start != Start::Random).then(|| fly(Place::Pad)),
@@ -94,7 +103,8 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let content = File {
         snapshot: found.snapshot.display().to_string(),
         track: &about.track.name,
-        vehicle: &about.vehicle.name,
+        vehicle: &vehicle.name,
+        trained_vehicle: &about.vehicle.name,
         steps: about.steps,
         seed: about.seed,
         max_steps: config.max_steps,
@@ -105,7 +115,9 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     if args.json {
         super::print(&json)?;
     } else {
-        let title = format!("{} on {} after {:.1} M steps", content.snapshot, content.track, about.steps as f64 / 1e6);
+        let million = about.steps as f64 / 1e6;
+        let flown = other.as_ref().map_or(String::new(), |other| format!(" in {}", other.name));
+        let title = format!("{} on {}{flown} after {million:.1} M steps", content.snapshot, content.track);
         super::print(&format!("{title}\n\n{}", table::report(&report)))?;
     }
     tell(&format!("written to {}", written.display()));
@@ -122,13 +134,14 @@ fn judge(require: Option<f64>, report: &Report) -> Outcome {
 }
 
 /// A name that says what was measured, and that is still free.
-fn default_file(found: &Found, start: Start, agents: usize) -> PathBuf {
+fn default_file(found: &Found, other: Option<&Vehicle>, start: Start, agents: usize) -> PathBuf {
     let start = format!("{start:?}").to_lowercase();
+    let other = other.map_or(String::new(), |other| format!("{}-", run::plain(&other.name)));
     let name = match &found.run {
-        Some(_) => format!("evaluation-{start}-{agents}.json"),
+        Some(_) => format!("evaluation-{other}{start}-{agents}.json"),
         None => {
             let policy = found.snapshot.file_stem().unwrap_or_default().to_string_lossy();
-            format!("{policy}-evaluation-{start}-{agents}.json")
+            format!("{policy}-evaluation-{other}{start}-{agents}.json")
         }
     };
     let beside = found.run.as_deref().or(found.snapshot.parent()).unwrap_or(Path::new(""));

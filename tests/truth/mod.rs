@@ -1,72 +1,89 @@
-//! An independent simulator: shares no equation with `src/`, so that a test can be wrong about us.
+//! An independent simulator: makes flight logs whose truth is known. It shares no equation with the crate; from there it
+//! takes only the type of a log and, as the human at the sticks, the pilot.
 //!
-//! Runge-Kutta at 2 kHz under commands held for 10 ms, and sensors with noise, bias, quantisation and their own clocks. The
-//! pilot is racer's: he is not part of the physics.
+//! command -> [`response`] -> [`thrust`], [`drag`] -> [`integrate`] -> [`sense`], each in its file.
 
-#![allow(dead_code)] // Each test uses a part.
+// Every test that includes this uses its own part.
+#![allow(dead_code)]
 
-pub mod motion;
+pub mod drag;
+pub mod integrate;
+pub mod response;
 pub mod sense;
+pub mod state;
+pub mod thrust;
 pub mod vehicle;
 
-use motion::Body;
-use nalgebra::{UnitQuaternion, Vector3};
+use integrate::step;
 use racer::flight::{Log, VehicleRecord};
-use racer::pilot::{Known, Pilot, Seen};
-use rand::SeedableRng;
+use racer::pilot::{Limits, Pilot, Seen};
 use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
 use sense::Sensors;
+pub use state::State;
 pub use vehicle::Vehicle;
 
-/// Integration step, s.
-pub const STEP_S: f64 = 5e-4;
-/// Steps between two commands.
-const STEPS: usize = 20;
+/// Integration steps a command is held for: 2 kHz at 100 Hz.
+pub const STEPS: usize = 20;
+/// Control step, s.
+pub const CONTROL_S: f64 = 0.01;
 
-/// What a flight was.
-pub struct Flown {
-    pub log: Log,
-    /// Commands in [-1, 1], one each 10 ms.
-    pub commands: Vec<[f64; 4]>,
-    /// The body at each command.
-    pub bodies: Vec<Body>,
+/// The pilot flies `vehicle` for `seconds`; `noise` scales the errors of all sensors (1 is realistic, 0 is none but
+/// sampling). `seed` decides manoeuvres, errors, rates and phases.
+pub fn fly(vehicle: &Vehicle, seed: u64, seconds: f64, noise: f64) -> Log {
+    let mut pilot = Pilot::new(seed, limits(vehicle, seed, seconds));
+    let mut time_s = 0.0;
+    record(vehicle, seed, seconds, noise, &mut |state| {
+        let command = pilot.command(&seen(state, vehicle, time_s));
+        time_s += CONTROL_S;
+        command
+    })
 }
 
-/// Flies `vehicle` for `seconds` with the pilot; noise is `noise` times the usual.
-pub fn fly(vehicle: &Vehicle, seed: u64, seconds: f64, noise: f64) -> Flown {
-    let known = Known {
-        max_rate_rad_s: vehicle.full_rate,
-        hover: vehicle.hover(vehicle.full_v),
-        thrust_to_weight: vehicle.push(1.0, vehicle.full_v) / vehicle::GRAVITY,
-    };
-    let mut pilot = Pilot::new(seed, known);
-    let mut sensors = Sensors::new(noise, StdRng::seed_from_u64(seed));
-    let mut body = Body::resting(vehicle.full_v);
-    let (mut commands, mut bodies) = (Vec::new(), Vec::new());
-    let mut log = Log { name: format!("flight {seed}"), ..Log::default() };
-    log.vehicle = VehicleRecord { mass_kg: Some(vehicle.mass), max_rate_rad_s: Some(vehicle.full_rate) };
-    for tick in 0..(seconds * 100.0) as usize {
-        let time_s = tick as f64 * STEPS as f64 * STEP_S;
-        let [w, x, y, z] = wxyz(&body.attitude);
-        let seen =
-            Seen { time_s, position: body.position.into(), velocity: body.velocity.into(), attitude: [w, x, y, z] };
-        let command = pilot.command(&seen);
-        let asked: [f64; 3] = std::array::from_fn(|k| command[k] * vehicle.full_rate[k]);
-        log.setpoint.push(time_s, [asked[0], asked[1], asked[2], 0.5 * (command[3] + 1.0)]);
-        commands.push(command);
-        bodies.push(body.clone());
-        for step in 0..STEPS {
-            sensors.sense(vehicle, &body, tick * STEPS + step, &mut log);
-            body.advance(vehicle, command, STEP_S);
+/// What the pilot is told: a hover command that is up to 15 % of the weight off.
+pub fn limits(vehicle: &Vehicle, seed: u64, seconds: f64) -> Limits {
+    let mut rng = StdRng::seed_from_u64(seed ^ 0x5eed);
+    let volts = 0.5 * (vehicle.full_v + vehicle.empty_v);
+    let hover = vehicle.command_for(vehicle.gravity * rng.random_range(0.85..1.15), volts);
+    Limits { max_rate_rad_s: vehicle.configured_rate, hover_command: hover, seconds, empty_v: vehicle.empty_v }
+}
+
+/// What the pilot sees at that moment.
+pub fn seen(state: &State, vehicle: &Vehicle, time_s: f64) -> Seen {
+    let q = state.attitude;
+    Seen {
+        time_s,
+        position: state.position.into(),
+        velocity: state.velocity.into(),
+        attitude: [q.w, q.i, q.j, q.k],
+        rates: state.rates(vehicle).into(),
+        voltage: state.voltage,
+    }
+}
+
+/// Flies what `human` commands (roll, pitch, yaw rate, thrust in [-1, 1]) from rest on the ground.
+pub fn record(
+    vehicle: &Vehicle,
+    seed: u64,
+    seconds: f64,
+    noise: f64,
+    human: &mut dyn FnMut(&State) -> [f64; 4],
+) -> Log {
+    let mut log = Log { name: format!("truth {seed}"), start_ns: 1_700_000_000_000_000_000, ..Log::default() };
+    log.vehicle = VehicleRecord { mass_kg: Some(vehicle.mass), max_rate_rad_s: Some(vehicle.configured_rate) };
+    let mut sensors = Sensors::new(seed, noise);
+    let mut state = State::on_ground(vehicle);
+    let dt = CONTROL_S / STEPS as f64;
+    for control in 0..(seconds / CONTROL_S).round() as usize {
+        let time = control as f64 * CONTROL_S;
+        let command = human(&state);
+        let [x, y, z] = vehicle.configured_rate;
+        log.setpoint.push(time, [command[0] * x, command[1] * y, command[2] * z, 0.5 + 0.5 * command[3]]);
+        for k in 0..STEPS {
+            let next = step(&state, vehicle, command, dt);
+            sensors.sense(time + k as f64 * dt, dt, &state, &next, vehicle, &mut log);
+            state = next;
         }
     }
-    Flown { log, commands, bodies }
-}
-
-pub fn wxyz(q: &UnitQuaternion<f64>) -> [f64; 4] {
-    [q.w, q.i, q.j, q.k]
-}
-
-pub fn up() -> Vector3<f64> {
-    Vector3::z()
+    log
 }

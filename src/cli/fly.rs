@@ -1,0 +1,158 @@
+//! `racer fly`: a flight in the simulator, recorded.
+
+use super::{Outcome, tell};
+use crate::check::BadInput;
+use crate::document::nearest;
+use crate::env::Race;
+use crate::flight::sensors::SensorConfig;
+use crate::flight::{Log, Stream, write};
+use crate::fly::{Flown, by_pilot, by_policy};
+use crate::fsio::Reserved;
+use crate::lane::Level;
+use crate::pilot::Kind;
+use crate::run;
+use crate::snapshot::{About, Snapshot};
+use crate::track::Track;
+use crate::vehicle::Vehicle;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Fly a policy, or the excitation pilot, in the simulator and record a log
+#[derive(Debug, clap::Args)]
+#[command(after_help = help())]
+pub struct Args {
+    /// A run folder (its best policy), a snapshot file, or `latest` for the youngest run below runs/
+    #[arg(value_name = "RUN|SNAPSHOT|latest", required_unless_present = "pilot", conflicts_with = "pilot")]
+    policy: Option<String>,
+    /// Fly the manoeuvres that identification needs, from the ground to the landing
+    #[arg(long)]
+    pilot: bool,
+    /// Only these manoeuvres of the pilot, separated by commas
+    #[arg(long, value_name = "NAME", value_delimiter = ',', requires = "pilot")]
+    manoeuvres: Vec<String>,
+    /// Vehicle: a name or a file [default: the policy's own; seed_class for the pilot]
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<String>,
+    /// Track: a name or a file [default: the policy's own]
+    #[arg(long, value_name = "NAME|FILE", conflicts_with = "pilot")]
+    track: Option<String>,
+    /// Longest flight, s [default: 60; 300 for the pilot]
+    #[arg(long, allow_negative_numbers = true, value_parser = parse_seconds)]
+    seconds: Option<f64>,
+    /// Sensors: a name or a file, looked for here, in configs/sensors/ and among the built-in ones
+    #[arg(long, value_name = "NAME|FILE", default_value = "typical")]
+    sensors: String,
+    /// Where all random numbers start: manoeuvres and the errors of the sensors
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// New file for the log (MCAP)
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+const HELP: &str =
+    "A policy races from the pad, lap after lap, until it fails. The pilot lands when the time is up or the \
+battery empty. Built-in sensors: ideal, typical.
+
+Examples:
+  racer fly --pilot --out pilot.mcap
+  racer fly --pilot --manoeuvres punch,chop --seconds 60 --vehicle mine.toml --out thrust.mcap
+  racer fly latest --seconds 30 --sensors ideal --out laps.mcap";
+
+/// The help with the names of all manoeuvres.
+fn help() -> String {
+    let names: Vec<_> = Kind::ALL.into_iter().map(Kind::name).collect();
+    format!("{HELP}\n\nManoeuvres: {}", names.join(", "))
+}
+
+/// Shortest flight of the pilot, s: it needs half of that for taking off and landing.
+const SHORTEST_PILOT_S: f64 = 40.0;
+/// Thrust over weight of the vehicles that the pilot is made for.
+const PILOT_THRUST: [f64; 2] = [2.5, 8.0];
+
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("expected 0.1 to 3600".into()),
+    }
+}
+
+/// Flies, records and writes.
+pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    let sensors = SensorConfig::load(&args.sensors)?;
+    let file = Reserved::new(&args.out)?;
+    let flown = match &args.policy {
+        Some(policy) => fly_policy(args, policy, &sensors)?,
+        None => fly_pilot(args, &sensors)?,
+    };
+    let written = file.write(&write::mcap(&flown.log)?)?;
+    super::print(&summary(&flown))?;
+    tell(&format!("written to {}", written.display()));
+    Ok(Outcome::Done)
+}
+
+fn fly_policy(args: &Args, policy: &str, sensors: &SensorConfig) -> anyhow::Result<Flown> {
+    let Snapshot { network, about } = Snapshot::read(&run::find(policy)?.snapshot)?;
+    let About { track, vehicle, env, .. } = about;
+    let track = args.track.as_deref().map_or(Ok(track), Track::load)?;
+    let other = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
+    let race = Race::new(&env, &track, other.as_ref().unwrap_or(&vehicle), args.seed).seen_as(&vehicle).scored(&track);
+    Ok(by_policy(Level::best(), &race, &network, sensors, args.seed, args.seconds.unwrap_or(60.0)))
+}
+
+fn fly_pilot(args: &Args, sensors: &SensorConfig) -> anyhow::Result<Flown> {
+    let kinds = args.manoeuvres.iter().map(|name| named(name)).collect::<Result<Vec<_>, _>>()?;
+    let seconds = args.seconds.unwrap_or(300.0);
+    if seconds < SHORTEST_PILOT_S {
+        let expected = format!("{SHORTEST_PILOT_S} s or more");
+        let advice = "the pilot takes off, flies, and lands";
+        return Err(BadInput::new("--seconds", format!("{seconds} s"), &expected, advice).into());
+    }
+    let vehicle = Vehicle::load(args.vehicle.as_deref().unwrap_or("seed_class"))?;
+    let ratio = vehicle.thrust_to_weight();
+    let [low, high] = PILOT_THRUST;
+    if !(low..=high).contains(&ratio) {
+        tell(&format!("the pilot is made for {low} to {high} times the weight in thrust; this vehicle has {ratio:.1}"));
+    }
+    let flown = by_pilot(&vehicle, sensors, &kinds, args.seed, seconds);
+    if flown.seconds < seconds - 20.0 {
+        tell(&format!("landed after {:.0} s: the battery was empty", flown.seconds));
+    }
+    Ok(flown)
+}
+
+fn named(name: &str) -> Result<Kind, BadInput> {
+    Kind::named(name).ok_or_else(|| {
+        let advice = match nearest(name, Kind::ALL.into_iter().map(Kind::name)) {
+            Some(near) => format!("did you mean `{near}`? `racer fly --help` lists them"),
+            None => "`racer fly --help` lists them".into(),
+        };
+        BadInput::new(format!("--manoeuvres {name}"), "no such manoeuvre", "a manoeuvre of the pilot", advice)
+    })
+}
+
+/// The flight and what each stream holds.
+fn summary(flown: &Flown) -> String {
+    let mut text = format!("flown      {:.1} s, top speed {:.1} m/s\n", flown.seconds, flown.top_speed);
+    if let Some(failure) = flown.failure {
+        let _ = writeln!(text, "ended by   {}", failure.replace('_', " "));
+    }
+    if !flown.laps.is_empty() {
+        let times: Vec<_> = flown.laps.iter().map(|lap| format!("{lap:.2}")).collect();
+        let _ = writeln!(text, "laps       {} s", times.join(", "));
+    }
+    let Log { setpoint, imu, odometry, battery, .. } = &flown.log;
+    for (name, (samples, rate)) in
+        [("setpoint", size(setpoint)), ("imu", size(imu)), ("odometry", size(odometry)), ("battery", size(battery))]
+    {
+        let _ = writeln!(text, "{name:<10} {samples} samples at {rate:.0} Hz");
+    }
+    text.trim_end().into()
+}
+
+/// Samples of a stream, and how many a second.
+fn size<const N: usize>(stream: &Stream<N>) -> (usize, f64) {
+    let span = stream.time_s.last().zip(stream.time_s.first()).map_or(0.0, |(last, first)| last - first);
+    let rate = if span > 0.0 { (stream.len() - 1) as f64 / span } else { 0.0 };
+    (stream.len(), rate)
+}
