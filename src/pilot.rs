@@ -49,7 +49,7 @@ const GROUND_S: f64 = 2.0;
 /// Height at which the first manoeuvre is planned, m.
 const TAKEN_OFF_M: f64 = 12.0;
 /// Time kept for the landing, s.
-const LANDING_S: f64 = 14.0;
+const LANDING_S: f64 = 16.0;
 /// Height over the ground at which the throttle is closed, m.
 const TOUCH_M: f64 = 0.15;
 

@@ -145,7 +145,7 @@ fn flown(vehicle: &Vehicle, seed: u64) -> Log {
 }
 
 fn assert_in_the_box(log: &Log, name: &str) {
-    let aloft = |t: f64| (8.0..284.0).contains(&t);
+    let aloft = |t: f64| (8.0..282.0).contains(&t);
     let rows: Vec<_> = log.odometry.time_s.iter().zip(&log.odometry.rows).filter(|(t, _)| aloft(**t)).collect();
     for k in [0, 1] {
         let [low, high] = range(rows.iter().map(|(_, row)| row[k]));
@@ -172,7 +172,7 @@ fn the_pilot_covers_what_identification_needs() {
                 assert!(low < -share && high > share, "{seed}: rate {k} from {low} to {high} after {since} s");
             }
         }
-        let commands = log.setpoint.rows.iter().zip(&log.setpoint.time_s).filter(|(_, t)| (8.0..284.0).contains(*t));
+        let commands = log.setpoint.rows.iter().zip(&log.setpoint.time_s).filter(|(_, t)| (8.0..282.0).contains(*t));
         let [low, high] = range(commands.map(|(row, _)| 2.0 * row[3] - 1.0));
         assert!(low < -0.9 && high > 0.95, "{seed}: thrust command from {low} to {high}");
         for k in [7, 8] {

@@ -22,7 +22,7 @@ use std::path::PathBuf;
 #[command(after_help = help())]
 pub struct Args {
     /// A run folder (its best policy), a snapshot file, or `latest` for the youngest run below runs/
-    #[arg(value_name = "RUN|SNAPSHOT|latest", required_unless_present = "pilot", conflicts_with = "pilot")]
+    #[arg(value_name = "RUN|SNAPSHOT|latest", conflicts_with = "pilot")]
     policy: Option<String>,
     /// Fly the manoeuvres that identification needs, from the ground to the landing
     #[arg(long)]
@@ -79,6 +79,10 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 
 /// Flies, records and writes.
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    if args.policy.is_none() && !args.pilot {
+        let advice = "name a run or a snapshot, or give --pilot";
+        return Err(BadInput::new("racer fly", "nothing to fly", "a policy, or the pilot", advice).into());
+    }
     let sensors = SensorConfig::load(&args.sensors)?;
     let file = Reserved::new(&args.out)?;
     let flown = match &args.policy {

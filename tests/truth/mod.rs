@@ -4,7 +4,7 @@
 //! command -> [`response`] -> [`thrust`], [`drag`] -> [`integrate`] -> [`sense`], each in its file.
 
 // Every test that includes this uses its own part.
-#![allow(dead_code)]
+#![allow(dead_code, unused_imports)]
 
 pub mod drag;
 pub mod integrate;
