@@ -108,7 +108,19 @@ fn a_random_vehicle_is_found_again() {
     }
 }
 
-/// `cargo test --test round_trip -- --ignored --nocapture`, with the number of vehicles in DRAWS (default 40).
+/// `cargo test --test round_trip -- --ignored write`: a log to try `racer identify` on, and the vehicle that flew it, in target/truth.
+#[test]
+#[ignore = "writes files"]
+fn write_a_log_and_its_vehicle() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("target/truth");
+    std::fs::create_dir_all(&folder).unwrap();
+    let vehicle = truth::Vehicle::draw(7);
+    let log = racer::flight::write::mcap(&truth::fly(&vehicle, 7, SECONDS, 1.0)).unwrap();
+    std::fs::write(folder.join("flight.mcap"), log).unwrap();
+    std::fs::write(folder.join("true.toml"), toml::to_string(&vehicle.in_racer()).unwrap()).unwrap();
+}
+
+/// `cargo test --test round_trip -- --ignored --nocapture many`, with the number of vehicles in DRAWS (default 40).
 #[test]
 #[ignore = "minutes; its table is in RESULTS.md"]
 fn many_draws() {

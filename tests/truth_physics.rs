@@ -90,31 +90,12 @@ fn it_hovers_and_rests() {
     assert_eq!(integrate::specific_force(&resting, &vehicle), Vector3::new(0.0, 0.0, vehicle.gravity));
 }
 
-/// The same vehicle in the crate's terms.
-fn in_racer(v: &Vehicle) -> racer::vehicle::Vehicle {
-    let mut vehicle = racer::vehicle::Vehicle::load("seed_class").expect("built in");
-    vehicle.mass_kg = v.mass;
-    vehicle.gravity_m_s2 = v.gravity;
-    vehicle.thrust_n = v.thrust_n;
-    let [roll, pitch, yaw, thrust] = v.tau;
-    vehicle.time_constant_s = racer::vehicle::TimeConstants { roll, pitch, yaw, thrust };
-    let [roll, pitch, yaw] = v.max_rate.map(f64::to_degrees);
-    vehicle.max_rate_deg_s = racer::vehicle::MaxRates { roll, pitch, yaw };
-    vehicle.drag.semi_axes_m = v.semi_axes;
-    vehicle.drag.coefficient = v.drag_coefficient;
-    vehicle.drag.air_density_kg_m3 = v.air_density;
-    vehicle.battery.full_v = v.full_v;
-    vehicle.battery.empty_v = v.empty_v;
-    vehicle.battery.rate_v_s = v.voltage_rate;
-    vehicle
-}
-
 /// The crate's step of 0.5 ms follows the simulator for a second of wild commands within 0.1 mm, 1 mm/s and 0.001 rad.
 #[test]
 fn the_crates_model_agrees() {
     for seed in 0..5 {
         let vehicle = Vehicle::draw(seed);
-        let parameters = Parameters::new(&in_racer(&vehicle), &Factors::NOMINAL, DT);
+        let parameters = Parameters::new(&vehicle.in_racer(), &Factors::NOMINAL, DT);
         let mut state = State { velocity: Vector3::new(12.0, -5.0, 3.0), ..aloft(&vehicle, 0.1) };
         state.position.z = 0.5;
         state.velocity.z = 20.0;

@@ -46,7 +46,7 @@ pub struct Finding {
 pub struct Summary {
     pub stream: &'static str,
     pub samples: usize,
-    /// Median rate, 1/s.
+    /// Mean rate, 1/s.
     pub rate_hz: Option<f64>,
     /// Share of the samples that differ from the one before.
     pub fresh: f64,

@@ -118,6 +118,25 @@ impl Vehicle {
         0.5 * (low + high)
     }
 
+    /// The same vehicle in the crate's terms.
+    pub fn in_racer(&self) -> racer::vehicle::Vehicle {
+        let mut vehicle = racer::vehicle::Vehicle::load("seed_class").expect("built in");
+        vehicle.mass_kg = self.mass;
+        vehicle.gravity_m_s2 = self.gravity;
+        vehicle.thrust_n = self.thrust_n;
+        let [roll, pitch, yaw, thrust] = self.tau;
+        vehicle.time_constant_s = racer::vehicle::TimeConstants { roll, pitch, yaw, thrust };
+        let [roll, pitch, yaw] = self.max_rate.map(f64::to_degrees);
+        vehicle.max_rate_deg_s = racer::vehicle::MaxRates { roll, pitch, yaw };
+        vehicle.drag.semi_axes_m = self.semi_axes;
+        vehicle.drag.coefficient = self.drag_coefficient;
+        vehicle.drag.air_density_kg_m3 = self.air_density;
+        vehicle.battery.full_v = self.full_v;
+        vehicle.battery.empty_v = self.empty_v;
+        vehicle.battery.rate_v_s = self.voltage_rate;
+        vehicle
+    }
+
     pub fn truth(&self) -> Truth {
         let [a, b, c] = self.semi_axes;
         let factor = 0.5 * self.air_density * self.drag_coefficient * PI / self.mass;

@@ -64,7 +64,12 @@ fn mend<const N: usize>(
     let summary = Summary {
         stream: name,
         samples,
-        rate_hz: (kept.len() > 1).then(|| 1.0 / period(&kept.time_s)),
+        rate_hz: kept
+            .time_s
+            .first()
+            .zip(kept.time_s.last())
+            .filter(|(first, last)| last > first)
+            .map(|(first, last)| (kept.len() - 1) as f64 / (last - first)),
         fresh: share,
         span_s: kept.time_s.first().zip(kept.time_s.last()).map(|(&first, &last)| [first, last]),
     };
