@@ -129,8 +129,8 @@ fn many_draws() {
     let mut r2 = [f64::INFINITY; 4];
     for seed in 101..101 + draws {
         let (vehicle, found) = fly_and_identify(seed);
-        for k in 0..4 {
-            r2[k] = r2[k].min(found.response[k].r2.unwrap());
+        for (lowest, response) in r2.iter_mut().zip(&found.response) {
+            *lowest = lowest.min(response.r2.unwrap());
         }
         for j in judge(&vehicle, &found) {
             table.entry(j.name.clone()).or_default().push(j);

@@ -75,15 +75,11 @@ impl<'a> Force<'a> {
         let mut out: [Vec<Vec<f64>>; 3] = Default::default();
         for (f, flight) in self.data.flights.iter().enumerate() {
             let mut force: [Vec<f64>; 3] = Default::default();
-            for i in 0..flight.time.len() {
+            for (i, u) in command[f].iter().enumerate() {
                 let v: [f64; 3] = std::array::from_fn(|k| flight.velocity[k][i]);
                 let damping = if draggy { damping(&drag, &BODY, v) } else { 0.0 };
                 for k in 0..3 {
-                    let lift = if k == 2 {
-                        specific_thrust(&thrust, command[f][i], self.voltage[f][i])
-                    } else {
-                        x[OFFSET + k]
-                    };
+                    let lift = if k == 2 { specific_thrust(&thrust, *u, self.voltage[f][i]) } else { x[OFFSET + k] };
                     force[k].push(if draggy { lift - damping * v[k] } else { lift });
                 }
             }

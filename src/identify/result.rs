@@ -38,7 +38,7 @@ pub struct Drag {
 
 impl Drag {
     pub(super) fn unknown(&mut self, why: &str) {
-        self.k_1_m = [const { () }; 3].map(|()| Estimate::unknown(why));
+        self.k_1_m = std::array::from_fn(|_| Estimate::unknown(why));
     }
 }
 
