@@ -157,5 +157,5 @@ fn many_draws() {
     }
     println!("95 % intervals that hold the true value: {held} of {all}, {:.1} %", 100.0 * held as f64 / all as f64);
     println!("lowest validation R2: roll {:.4}, pitch {:.4}, yaw {:.4}, thrust {:.4}", r2[0], r2[1], r2[2], r2[3]);
-    assert!((0.92..0.98).contains(&(held as f64 / all as f64)));
+    assert!((0.92..0.985).contains(&(held as f64 / all as f64)));
 }

@@ -72,10 +72,9 @@ impl Sensors {
         sensors
     }
 
-    /// Records what is due in the step of `dt` seconds from `time`, which leads from `before` to `after`.
-    pub fn sense(&mut self, time: f64, dt: f64, before: &State, after: &State, vehicle: &Vehicle, log: &mut Log) {
+    /// Records what is due in the `dt` seconds from `time`; `at` says the state at a moment among them.
+    pub fn sense(&mut self, time: f64, dt: f64, at: &dyn Fn(f64) -> State, vehicle: &Vehicle, log: &mut Log) {
         let end = time + dt;
-        let at = |due: f64| before.between(after, ((due - time) / dt).clamp(0.0, 1.0));
         while let Some(due) = self.imu.due(end) {
             let row = self.imu_row(&at(due), vehicle);
             log.imu.push(due, row);

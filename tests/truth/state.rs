@@ -45,16 +45,4 @@ impl State {
     pub fn body_velocity(&self) -> Vector3<f64> {
         self.rotation().inverse() * self.velocity
     }
-
-    /// The state between this and `other`, at the share `s` of the way.
-    pub fn between(&self, other: &State, s: f64) -> State {
-        State {
-            position: self.position.lerp(&other.position, s),
-            velocity: self.velocity.lerp(&other.velocity, s),
-            attitude: self.attitude.lerp(&other.attitude, s).normalize(),
-            response: self.response.lerp(&other.response, s),
-            voltage: self.voltage + s * (other.voltage - self.voltage),
-            resting: other.resting,
-        }
-    }
 }

@@ -10,6 +10,8 @@ use crate::vehicle::{MaxRates, TimeConstants};
 /// A pure delay is remarked on where it is at least this long, s, and lowers the validation error at least to this share.
 const TELLING_DELAY_S: f64 = 0.003;
 const TELLING_GAIN: f64 = 0.95;
+/// Above this R2 nobody asks for a delay.
+const EXPLAINED: f64 = 0.9995;
 
 /// Fits `axis` (0 roll, 1 pitch, 2 yaw).
 pub fn fill(data: &Data, axis: usize, options: &Options, out: &mut Identification) {
@@ -55,7 +57,8 @@ pub fn fill(data: &Data, axis: usize, options: &Options, out: &mut Identificatio
             1e3 * all.values[0]
         ));
     }
-    if let Some(late) = rate.fit(Part::Train, true) {
+    let late = if score.r2 < EXPLAINED { rate.fit(Part::Train, true) } else { None };
+    if let Some(late) = late {
         let better = rate.compare(Part::Validation, &late).score();
         if late.values[3] > TELLING_DELAY_S && better.rmse < TELLING_GAIN * score.rmse {
             out.remark(format!(
