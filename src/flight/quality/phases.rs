@@ -20,8 +20,11 @@ const BIN_S: f64 = 0.1;
 const LANDING_S: f64 = 2.0;
 /// The same at the beginning and at the end of a log, s.
 const RESTING_S: f64 = 0.2;
-/// Kept away from take-off and landing, s.
+/// Kept away from take-off, and from touching down, which comes before standing still, s.
 const GROUND_MARGIN_S: f64 = 0.3;
+const TOUCH_MARGIN_S: f64 = 1.0;
+/// Kept away from the end of a log, which is often cut off while the vehicle touches down, s.
+const END_MARGIN_S: f64 = 0.5;
 
 /// Times around impacts; from the last ones to the end of the log where it ends soon after.
 pub fn impacts(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
@@ -93,7 +96,7 @@ pub fn ground(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
     let landed = |s: &Span| s[1] - s[0] >= if at_an_end(s) { RESTING_S } else { LANDING_S };
     let mut holes: Vec<Span> = still.into_iter().filter(landed).collect();
     for hole in &mut holes {
-        *hole = [hole[0] - GROUND_MARGIN_S, hole[1] + GROUND_MARGIN_S];
+        *hole = [hole[0] - TOUCH_MARGIN_S, hole[1] + GROUND_MARGIN_S];
         if hole[0] <= start + 1.0 {
             hole[0] = start;
         }
@@ -101,7 +104,7 @@ pub fn ground(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
             hole[1] = end + BIN_S;
         }
     }
-    let holes = joined(holes);
+    let mut holes = joined(holes);
     for hole in &holes {
         let what = format!("{:.1} s on the ground", hole[1] - hole[0]);
         findings.push(Finding::new(Severity::Note, "ground", "imu", what, "this time is left out").during(*hole));
@@ -110,5 +113,6 @@ pub fn ground(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
         let what = "the vehicle never flies".into();
         findings.push(Finding::new(Severity::Problem, "ground", "imu", what, "nothing can be identified"));
     }
-    holes
+    holes.push([end - END_MARGIN_S, end + BIN_S]);
+    joined(holes)
 }

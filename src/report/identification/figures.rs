@@ -54,12 +54,14 @@ fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
 fn signals(area: &DrawingArea<SVGBackend, Shift>, channel: &Channel) -> anyhow::Result<()> {
     let (all, border) = joined(channel);
     let shown: Vec<[f64; 3]> = all.into_iter().filter(|p| (p[0] - border).abs() <= 5.0).collect();
+    // Room for the legend.
+    let y = range(shown.iter().flat_map(|p| [p[1], p[2]]));
     let mut chart = ChartBuilder::on(area)
         .caption(format!("{}: ten seconds around the border", channel.name), ("sans-serif", 18))
         .margin(8)
         .x_label_area_size(30)
         .y_label_area_size(64)
-        .build_cartesian_2d(border - 5.0..border + 5.0, range(shown.iter().flat_map(|p| [p[1], p[2]])))
+        .build_cartesian_2d(border - 5.0..border + 5.0, y.start..y.end + 0.35 * (y.end - y.start))
         .map_err(drawing)?;
     mesh(&mut chart, "", channel.unit)?;
     for (k, name, colour, width) in [(1, "measured", MEASURED, 2), (2, "predicted", PREDICTED, 1)] {
@@ -71,7 +73,12 @@ fn signals(area: &DrawingArea<SVGBackend, Shift>, channel: &Channel) -> anyhow::
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], colour.stroke_width(3)));
     }
     let legend = &mut chart.configure_series_labels();
-    legend.background_style(WHITE.mix(0.8)).label_font(("sans-serif", 14)).draw().map_err(drawing)?;
+    legend
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE.mix(0.8))
+        .label_font(("sans-serif", 14))
+        .draw()
+        .map_err(drawing)?;
     divide(&mut chart, border)
 }
 
