@@ -43,16 +43,16 @@ pub struct Args {
     #[arg(long)]
     name: Option<String>,
     /// Mass, kg [default: what the logs say, else the base vehicle's]
-    #[arg(long, value_name = "KG")]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
     mass: Option<f64>,
     /// Rates that a full stick asks for, deg/s: roll,pitch,yaw [default: what the logs say, else the base vehicle's]
     #[arg(long, value_name = "R,P,Y", value_parser = parse_rates)]
     full_rates: Option<[f64; 3]>,
     /// Cut-off of the zero-phase filter on measured and predicted rates, Hz
-    #[arg(long, value_name = "HZ", default_value_t = 100.0)]
+    #[arg(long, value_name = "HZ", default_value_t = 100.0, allow_negative_numbers = true)]
     rate_cutoff: f64,
     /// The same on specific force, where vibration is
-    #[arg(long, value_name = "HZ", default_value_t = 30.0)]
+    #[arg(long, value_name = "HZ", default_value_t = 30.0, allow_negative_numbers = true)]
     force_cutoff: f64,
 }
 

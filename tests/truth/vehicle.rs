@@ -121,6 +121,7 @@ impl Vehicle {
     /// The same vehicle in the crate's terms.
     pub fn in_racer(&self) -> racer::vehicle::Vehicle {
         let mut vehicle = racer::vehicle::Vehicle::load("seed_class").expect("built in");
+        vehicle.name = "true".into();
         vehicle.mass_kg = self.mass;
         vehicle.gravity_m_s2 = self.gravity;
         vehicle.thrust_n = self.thrust_n;

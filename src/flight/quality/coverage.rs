@@ -16,10 +16,10 @@ pub struct Parameter {
 
 /// Least usable time for anything, s.
 const LEAST_S: f64 = 5.0;
-/// Least spread (5 to 95 %) of a rate setpoint, rad/s; of the thrust command, 0..1; of the voltage, V.
+/// Least spread (5 to 95 %) of a rate setpoint, rad/s; of the thrust command, 0..1; of the voltage, as a share of it.
 const RATE_SPREAD: f64 = 0.2;
 const THRUST_SPREAD: f64 = 0.05;
-const VOLTAGE_SPREAD: f64 = 0.3;
+const VOLTAGE_SPREAD: f64 = 0.015;
 /// Least speed (95 %) at which drag shows, m/s.
 const SPEED: f64 = 3.0;
 /// Least flight over which a discharge shows, s.
@@ -57,7 +57,10 @@ pub fn told(quality: &Quality) -> Vec<Parameter> {
     let thrust = no_force.clone().or_else(|| spread(command(3), THRUST_SPREAD, "of 1", "thrust command"));
     tell("thrust response", thrust.clone());
     tell("thrust curve", thrust.clone());
-    tell("thrust over voltage", thrust.or_else(|| spread(voltage, VOLTAGE_SPREAD, "V", "voltage")));
+    tell(
+        "thrust over voltage",
+        thrust.or_else(|| spread(voltage, VOLTAGE_SPREAD * voltage.map_or(0.0, |(_, high)| high), "V", "voltage")),
+    );
     let speed = |ks: &[usize]| {
         let most = ks.iter().filter_map(|&k| along(k)).map(|(low, high)| high.max(-low)).reduce(f64::max);
         match most {
