@@ -186,24 +186,10 @@ fn text(found: &Identification) -> String {
     });
     let header = ["response", "tau, ms", "RMSE", "MAE", "", "R2", "samples"];
     let response = findings::table(&header, response.collect(), 1..4);
-    let mut values: Vec<Vec<String>> = Vec::new();
-    let mut add = |name: &str, estimate_of: &Estimate, digits: usize, unit: &str| {
-        values.push(vec![name.into(), estimate(estimate_of, digits), unit.into()]);
+    let row = |(name, parameter, digits, unit): &(String, Estimate, usize, &str)| {
+        vec![name.clone(), estimate(parameter, *digits), unit.to_string()]
     };
-    for (axis, rate) in AXES.iter().zip(&found.max_rate_rad_s) {
-        add(&format!("maximum {axis} rate"), &rate.times(1f64.to_degrees()), 1, "deg/s");
-    }
-    for (k, c) in found.thrust_n.iter().enumerate() {
-        add(&format!("thrust c{k}"), c, 3, ["N", "N", "N", "N", "N/V", "N/V"][k]);
-    }
-    for (axis, k) in ["x", "y", "z"].iter().zip(&found.drag.k_1_m) {
-        add(&format!("drag over mass, {axis}"), k, 4, "1/m");
-    }
-    add("initial voltage", &found.battery.initial_v, 3, "V");
-    add("discharge", &found.battery.rate_v_s.times(60.0), 3, "V/min");
-    for (axis, bias) in ["x", "y", "z"].iter().zip(&found.accelerometer_bias_m_s2) {
-        add(&format!("accelerometer bias {axis}"), bias, 3, "m/s2");
-    }
+    let values = found.parameters().iter().map(row).collect();
     let values = findings::table(&["parameter", "value (95 % interval)", ""], values, 0..0);
     let assumed = found.vehicle.identified.iter().flat_map(|identified| &identified.assumed);
     let base = found.vehicle.identified.as_ref().map_or("", |identified| &identified.base);

@@ -3,7 +3,7 @@
 use super::data::Data;
 use super::estimate::Estimate;
 use super::rates::Compared;
-use super::{Options, fastest};
+use super::{AXES, Options, fastest};
 use crate::flight::spans::Span;
 use crate::stats::Score;
 use crate::vehicle::{Identified, LogSpan, Vehicle};
@@ -140,6 +140,26 @@ impl Identification {
             None => out.assume("mass_kg", "a flight does not tell it: weigh the vehicle and give --mass"),
         }
         out
+    }
+
+    /// Every parameter but the responses, as people read it: name, estimate, digits, unit.
+    pub fn parameters(&self) -> Vec<(String, Estimate, usize, &'static str)> {
+        let mut rows = Vec::new();
+        for (axis, rate) in AXES.iter().zip(&self.max_rate_rad_s) {
+            rows.push((format!("maximum {axis} rate"), rate.times(1f64.to_degrees()), 1, "deg/s"));
+        }
+        for (k, c) in self.thrust_n.iter().enumerate() {
+            rows.push((format!("thrust c{k}"), c.clone(), 3, if k < 4 { "N" } else { "N/V" }));
+        }
+        for (axis, k) in ["x", "y", "z"].iter().zip(&self.drag.k_1_m) {
+            rows.push((format!("drag over mass, {axis}"), k.clone(), 4, "1/m"));
+        }
+        rows.push(("initial voltage".into(), self.battery.initial_v.clone(), 3, "V"));
+        rows.push(("discharge".into(), self.battery.rate_v_s.times(60.0), 3, "V/min"));
+        for (axis, bias) in ["x", "y", "z"].iter().zip(&self.accelerometer_bias_m_s2) {
+            rows.push((format!("accelerometer bias {axis}"), bias.clone(), 3, "m/s2"));
+        }
+        rows
     }
 
     /// Marks a key of the vehicle file as taken from the base vehicle.

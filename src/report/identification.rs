@@ -68,28 +68,12 @@ fn interval(estimate: &Estimate, digits: usize) -> String {
 }
 
 fn parameters(found: &Identification) -> Markup {
-    let degrees = 1f64.to_degrees();
-    let mut rows: Vec<(String, Estimate, usize)> = Vec::new();
-    for (axis, rate) in AXES.iter().zip(&found.max_rate_rad_s) {
-        rows.push((format!("maximum {axis} rate, deg/s"), rate.times(degrees), 1));
-    }
-    for (k, c) in found.thrust_n.iter().enumerate() {
-        rows.push((format!("thrust c{k}, {}", if k < 4 { "N" } else { "N/V" }), c.clone(), 3));
-    }
-    for (axis, k) in ["x", "y", "z"].iter().zip(&found.drag.k_1_m) {
-        rows.push((format!("drag over mass along {axis}, 1/m"), k.clone(), 4));
-    }
-    rows.push(("initial voltage, V".into(), found.battery.initial_v.clone(), 3));
-    rows.push(("discharge, V/s".into(), found.battery.rate_v_s.clone(), 5));
-    for (axis, bias) in ["x", "y", "z"].iter().zip(&found.accelerometer_bias_m_s2) {
-        rows.push((format!("accelerometer bias {axis}, m/s2"), bias.clone(), 3));
-    }
     html! {
         h2 { "Parameters" }
         table {
             tr { th { "" } th { "value" } th { "95 % interval" } }
-            @for (name, estimate, digits) in &rows {
-                tr { td { (name) } td { (number(estimate.value, *digits)) } td { (interval(estimate, *digits)) } }
+            @for (name, estimate, digits, unit) in &found.parameters() {
+                tr { td { (name) ", " (unit) } td { (number(estimate.value, *digits)) } td { (interval(estimate, *digits)) } }
             }
         }
         @if let Some([low, high]) = found.flown {
