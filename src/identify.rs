@@ -20,6 +20,7 @@ use crate::flight::quality::Quality;
 use crate::stats::quantile;
 use crate::vehicle::Vehicle;
 use data::Data;
+use rayon::prelude::*;
 use result::Identification;
 use serde::Deserialize;
 
@@ -55,9 +56,10 @@ pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 pub fn identify(logs: Vec<Quality>, options: &Options, watch: Watch) -> Identification {
     let data = Data::new(logs);
     let mut out = Identification::new(&data, options);
-    for (axis, name) in AXES.into_iter().enumerate() {
-        watch(&format!("{name} response"), 0.15 * axis as f64);
-        fill::rates::fill(&data, axis, options, &mut out);
+    watch("roll, pitch and yaw response", 0.0);
+    let fitted: Vec<_> = (0..3).into_par_iter().map(|axis| fill::rates::fit(&data, axis, options)).collect();
+    for (axis, fitted) in fitted.into_iter().enumerate() {
+        fill::rates::keep(fitted, axis, &mut out);
     }
     watch("battery", 0.45);
     fill::battery::fill(&data, &mut out);

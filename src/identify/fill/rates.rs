@@ -2,8 +2,9 @@
 
 use crate::identify::data::{Data, Part};
 use crate::identify::estimate::Estimate;
-use crate::identify::rates::Axis;
+use crate::identify::rates::{Axis, Compared};
 use crate::identify::result::{Channel, Identification, Response};
+use crate::identify::solve::Solution;
 use crate::identify::{AXES, Options};
 use crate::vehicle::{MaxRates, TimeConstants};
 
@@ -13,24 +14,42 @@ const TELLING_GAIN: f64 = 0.95;
 /// Above this R2 nobody asks for a delay.
 const EXPLAINED: f64 = 0.9995;
 
-/// Fits `axis` (0 roll, 1 pitch, 2 yaw).
-pub fn fill(data: &Data, axis: usize, options: &Options, out: &mut Identification) {
-    let name = AXES[axis];
-    let unknown = |why: &str, out: &mut Identification| {
-        out.response[axis] = Response { tau_s: Estimate::unknown(why), ..Response::default() };
-        out.max_rate_rad_s[axis] = Estimate::unknown(why);
-        out.assume(&format!("time_constant_s.{name}"), why);
-        out.assume(&format!("max_rate_deg_s.{name}"), why);
-    };
-    if let Some(why) = data.why_not(&format!("{name} response")) {
-        return unknown(&why, out);
+/// One axis, fitted on the training part, on all of it, and with a delay where one may be missing.
+pub struct Fitted<'a> {
+    rate: Axis<'a>,
+    train: Solution,
+    all: Solution,
+    validation: Compared,
+    late: Option<Solution>,
+}
+
+/// Fits `axis` (0 roll, 1 pitch, 2 yaw), or says why the logs cannot tell it.
+pub fn fit<'a>(data: &'a Data, axis: usize, options: &Options) -> Result<Fitted<'a>, String> {
+    if let Some(why) = data.why_not(&format!("{} response", AXES[axis])) {
+        return Err(why);
     }
     let rate = Axis::new(data, axis, options.rate_cutoff_hz);
     let (Some(train), Some(all)) = (rate.fit(Part::Train, false), rate.fit(Part::All, false)) else {
-        return unknown("too few stretches of flight for a fit", out);
+        return Err("too few stretches of flight for a fit".into());
+    };
+    let validation = rate.compare(Part::Validation, &train);
+    let late = if validation.score().r2 < EXPLAINED { rate.fit(Part::Train, true) } else { None };
+    Ok(Fitted { rate, train, all, validation, late })
+}
+
+/// Puts what was found about `axis` into the result.
+pub fn keep(fitted: Result<Fitted, String>, axis: usize, out: &mut Identification) {
+    let name = AXES[axis];
+    let Fitted { rate, train, all, validation, late } = match fitted {
+        Ok(fitted) => fitted,
+        Err(why) => {
+            out.response[axis] = Response { tau_s: Estimate::unknown(&why), ..Response::default() };
+            out.max_rate_rad_s[axis] = Estimate::unknown(&why);
+            out.assume(&format!("time_constant_s.{name}"), &why);
+            return out.assume(&format!("max_rate_deg_s.{name}"), &why);
+        }
     };
     let degrees = 1f64.to_degrees();
-    let validation = rate.compare(Part::Validation, &train);
     let score = validation.score();
     let full = out.full_rate_rad_s[axis];
     out.response[axis] = Response {
@@ -57,7 +76,6 @@ pub fn fill(data: &Data, axis: usize, options: &Options, out: &mut Identificatio
             1e3 * all.values[0]
         ));
     }
-    let late = if score.r2 < EXPLAINED { rate.fit(Part::Train, true) } else { None };
     if let Some(late) = late {
         let better = rate.compare(Part::Validation, &late).score();
         if late.values[3] > TELLING_DELAY_S && better.rmse < TELLING_GAIN * score.rmse {
