@@ -2,6 +2,7 @@
 
 mod bench;
 mod check;
+mod columns;
 mod eval;
 mod findings;
 mod fly;

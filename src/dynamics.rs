@@ -152,9 +152,17 @@ impl<R: Real> State<R> {
 #[inline(always)]
 pub fn specific_force<R: Real>(s: &State<R>, p: &Parameters<R>) -> [R; 3] {
     let axes = body_axes(s.attitude);
-    let damping = drag::damping(&p.drag, &axes, s.velocity);
-    let [x, y, z]: [R; 3] = build!(|i| -damping * dot(axes[i], s.velocity));
-    [x, y, z + thrust::specific_thrust(&p.thrust, s.command[3], s.voltage)]
+    let velocity = build!(|i| dot(axes[i], s.velocity));
+    force_in_body(&p.thrust, &p.drag, s.command[3], s.voltage, velocity)
+}
+
+/// [`specific_force`] from c0..c5 of Eq. 7 and drag per axis (both over the mass), filtered thrust command, voltage and
+/// velocity in the body frame.
+#[inline(always)]
+pub fn force_in_body<R: Real>(thrust: &[R; 6], drag: &[R; 3], command: R, voltage: R, velocity: [R; 3]) -> [R; 3] {
+    let damping = drag::damping_in_body(drag, velocity);
+    let [x, y, z]: [R; 3] = build!(|i| -damping * velocity[i]);
+    [x, y, z + thrust::specific_thrust(thrust, command, voltage)]
 }
 
 /// One step under the held command `action`.

@@ -22,10 +22,9 @@ use crate::vehicle::Vehicle;
 use data::Data;
 use rayon::prelude::*;
 use result::Identification;
-use serde::Deserialize;
 
 /// How to identify.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Where values come from that the logs cannot tell.
     pub base: Vehicle,

@@ -1,7 +1,7 @@
 //! `racer check`: what a flight log holds, and what is wrong with it.
 
 use super::{Outcome, findings, tell};
-use crate::flight::quality::{Finding, Parameter, Summary, check, told};
+use crate::flight::quality::{Finding, Parameter, Summary, check};
 use crate::flight::spans::Span;
 use crate::flight::{self, Readable};
 use serde::Serialize;
@@ -43,14 +43,13 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let opened = flight::open_with(&args.log, flight::Options { mapping: args.mapping.as_deref(), flight: None })?;
     opened.remarks.iter().for_each(|remark| tell(remark));
     let quality = check(&opened.log);
-    let parameters = told(&quality);
     if args.json {
         let document = Document {
             log: &opened.log.name,
             streams: &quality.streams,
             findings: &quality.findings,
             usable_s: &quality.usable,
-            parameters: &parameters,
+            parameters: &quality.parameters,
         };
         super::print(&serde_json::to_string_pretty(&document)?)?;
     } else {
@@ -60,7 +59,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
             findings::streams(&quality.streams),
             findings::findings(&quality.findings),
             findings::usable(&opened.log, &quality),
-            findings::told(&parameters)
+            findings::told(&quality.parameters)
         ))?;
     }
     Ok(if opened.log.readable == Readable::Whole { Outcome::Done } else { Outcome::Damaged })

@@ -1,6 +1,6 @@
 //! `racer identify`: a vehicle from its flights.
 
-use super::{Outcome, findings, tell};
+use super::{Outcome, columns, findings, tell};
 use crate::check::{BadInput, Check};
 use crate::flight::quality::{Finding, Quality, Severity, check};
 use crate::flight::{self, Readable};
@@ -185,12 +185,12 @@ fn text(found: &Identification) -> String {
         ]
     });
     let header = ["response", "tau, ms", "RMSE", "MAE", "", "R2", "samples"];
-    let response = findings::table(&header, response.collect(), 1..4);
+    let response = columns::table(&header, response.collect(), 1..4);
     let row = |(name, parameter, digits, unit): &(String, Estimate, usize, &str)| {
         vec![name.clone(), estimate(parameter, *digits), unit.to_string()]
     };
     let values = found.parameters().iter().map(row).collect();
-    let values = findings::table(&["parameter", "value (95 % interval)", ""], values, 0..0);
+    let values = columns::table(&["parameter", "value (95 % interval)", ""], values, 0..0);
     let assumed = found.vehicle.identified.iter().flat_map(|identified| &identified.assumed);
     let base = found.vehicle.identified.as_ref().map_or("", |identified| &identified.base);
     let assumed: String = assumed.map(|(key, why)| format!("\n  {key}: {why}")).collect();

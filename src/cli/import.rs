@@ -1,6 +1,6 @@
 //! `racer import`: a flight log of any kind as a canonical one.
 
-use super::{Outcome, tell};
+use super::{Outcome, columns, tell};
 use crate::flight::{self, Log, Options, Readable, Stream};
 use crate::fsio::Reserved;
 use std::path::PathBuf;
@@ -81,29 +81,31 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
 
 /// A line a stream, and what is missing.
 fn found(log: &Log) -> String {
-    let mut text = format!("{:<16}{:>9}{:>11}{:>11}{:>11}  {}\n", "", "rows", "rate, 1/s", "from, s", "to, s", "lacks");
-    text += &line("setpoint", &log.setpoint, &[("rate", 0..3), ("thrust", 3..4)]);
-    text += &line("imu", &log.imu, &[("gyro", 0..3), ("specific force", 3..6)]);
-    text += &line("odometry", &log.odometry, &[("position", 0..3), ("attitude", 3..7), ("velocity", 7..10)]);
-    text += &line("battery", &log.battery, &[("voltage", 0..1), ("current", 1..2)]);
-    text += &line("rotors", &log.rotors, &[("speed", 0..4)]);
+    let rows = vec![
+        row("setpoint", &log.setpoint, &[("rate", 0..3), ("thrust", 3..4)]),
+        row("imu", &log.imu, &[("gyro", 0..3), ("specific force", 3..6)]),
+        row("odometry", &log.odometry, &[("position", 0..3), ("attitude", 3..7), ("velocity", 7..10)]),
+        row("battery", &log.battery, &[("voltage", 0..1), ("current", 1..2)]),
+        row("rotors", &log.rotors, &[("speed", 0..4)]),
+    ];
+    let table = columns::table(&["stream", "rows", "rate, Hz", "from, s", "to, s", "lacks"], rows, 1..5);
     let show = |value: Option<String>| value.unwrap_or("unknown".into());
     let mass = show(log.vehicle.mass_kg.map(|mass| format!("{mass} kg")));
     let rates = show(log.vehicle.max_rate_rad_s.map(|rates| format!("{:.0?} deg/s", rates.map(f64::to_degrees))));
-    text + &format!("mass {mass}, full-stick rates {rates}")
+    format!("{table}\nmass {mass}, full-stick rates {rates}")
 }
 
-fn line<const N: usize>(name: &str, stream: &Stream<N>, parts: &[(&str, std::ops::Range<usize>)]) -> String {
+fn row<const N: usize>(name: &str, stream: &Stream<N>, parts: &[(&str, std::ops::Range<usize>)]) -> Vec<String> {
     let times = || stream.time_s.iter().copied();
     let (from, to) = (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max));
     if stream.is_empty() {
-        return format!("{name:<16}{:>9}\n", "none");
+        return [name, "none", "", "", "", ""].map(String::from).into();
     }
     let rate = (stream.len() - 1) as f64 / (to - from);
     let lacks = |columns: &std::ops::Range<usize>| {
         stream.rows.iter().all(|row| row[columns.clone()].iter().all(|x| x.is_nan()))
     };
     let lacking: Vec<&str> = parts.iter().filter(|(_, columns)| lacks(columns)).map(|(part, _)| *part).collect();
-    let line = format!("{name:<16}{:>9}{rate:>11.1}{from:>11.2}{to:>11.2}  {}", stream.len(), lacking.join(", "));
-    format!("{}\n", line.trim_end())
+    let numbers = [format!("{rate:.1}"), format!("{from:.2}"), format!("{to:.2}"), lacking.join(", ")];
+    [name.to_string(), stream.len().to_string()].into_iter().chain(numbers).collect()
 }

@@ -3,11 +3,12 @@
 mod clipping;
 mod coverage;
 mod offset;
+mod outliers;
 mod phases;
 mod signs;
 mod timing;
 
-pub use coverage::{Parameter, told};
+pub use coverage::Parameter;
 
 use super::spans::{self, Span};
 use super::{Log, Readable};
@@ -64,6 +65,8 @@ pub struct Quality {
     pub findings: Vec<Finding>,
     /// When the vehicle flies, undamaged and within its sensors' ranges.
     pub usable: Vec<Span>,
+    /// What the log can tell, in the order of the model's equations.
+    pub parameters: Vec<Parameter>,
 }
 
 impl Finding {
@@ -94,7 +97,8 @@ pub fn check(log: &Log) -> Quality {
             "no angular velocity and no specific force".into(),
             "nothing can be identified",
         ));
-        return Quality { log, streams, findings, usable: Vec::new() };
+        let parameters = coverage::told(&log, &[]);
+        return Quality { log, streams, findings, usable: Vec::new(), parameters };
     }
     offset::align(&mut log, &mut findings);
     let mut holes = timing::gaps(&log, &mut findings);
@@ -105,6 +109,8 @@ pub fn check(log: &Log) -> Quality {
     let mut usable = spans::without([times[0], times[times.len() - 1]], &holes);
     usable.retain(|span| span[1] - span[0] >= phases::SHORTEST_S);
     signs::judge(&log, &usable, &mut findings);
+    outliers::count(&log, &mut findings);
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
-    Quality { log, streams, findings, usable }
+    let parameters = coverage::told(&log, &usable);
+    Quality { log, streams, findings, usable, parameters }
 }

@@ -3,6 +3,7 @@
 use super::data::{Data, Part};
 use super::rates::{Compared, times};
 use super::solve::{Solution, Unknown, solve};
+use crate::dynamics::battery::discharged;
 use crate::flight::series::last_at;
 
 /// Order of the unknowns: rate (V/s), then the voltage at the beginning of each flight (V).
@@ -42,8 +43,8 @@ pub fn fit(data: &Data, part: Part) -> Option<Solution> {
         vec![Unknown { start: first, low: 0.0, high: 1000.0, step: 1e-2, linear: true }; 1 + data.flights.len()];
     unknowns[RATE] = Unknown { start: 0.0, low: -10.0, high: 10.0, step: 1e-4, linear: true };
     let residuals = |x: &[f64]| {
-        let line = |i: usize| x[INITIAL + flight[i]] + x[RATE] * (times[i] - begins[flight[i]]) - values[i];
-        vec![(0..values.len()).map(line).collect()]
+        let line = |i: usize| discharged(x[INITIAL + flight[i]], x[RATE], times[i] - begins[flight[i]]);
+        vec![(0..values.len()).map(|i| line(i) - values[i]).collect()]
     };
     solve(&unknowns, &blocks, &residuals)
 }
@@ -54,7 +55,8 @@ pub fn compare(data: &Data, part: Part, fit: &Solution) -> Compared {
     let chosen = data.choose(part, |f, i| measured[f][i].is_finite());
     let begins = beginnings(data);
     let line = data.flights.iter().enumerate().map(|(f, flight)| {
-        flight.time.iter().map(|t| fit.values[INITIAL + f] + fit.values[RATE] * (t - begins[f])).collect::<Vec<_>>()
+        let line = |t: &f64| discharged(fit.values[INITIAL + f], fit.values[RATE], t - begins[f]);
+        flight.time.iter().map(line).collect::<Vec<_>>()
     });
     Compared {
         time: times(data, &chosen),

@@ -3,13 +3,11 @@
 use super::data::{Chosen, Data, Part};
 use super::rates::{Compared, TAU_S, TAUS_S, times};
 use super::solve::{Solution, Unknown, solve};
-use crate::dynamics::drag::damping;
+use crate::dynamics::force_in_body;
 use crate::dynamics::thrust::specific_thrust;
 use crate::stats::mean;
 use nalgebra::{DMatrix, DVector};
 
-/// Body axes seen from the body.
-const BODY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// Bounds of the drag along an axis, 1/m.
 const DRAG: [f64; 2] = [0.0, 0.5];
 
@@ -76,12 +74,12 @@ impl<'a> Force<'a> {
         for (f, flight) in self.data.flights.iter().enumerate() {
             let mut force: [Vec<f64>; 3] = Default::default();
             for (i, u) in command[f].iter().enumerate() {
-                let v: [f64; 3] = std::array::from_fn(|k| flight.velocity[k][i]);
-                let damping = if draggy { damping(&drag, &BODY, v) } else { 0.0 };
-                for k in 0..3 {
-                    let lift = if k == 2 { specific_thrust(&thrust, *u, self.voltage[f][i]) } else { x[OFFSET + k] };
-                    force[k].push(if draggy { lift - damping * v[k] } else { lift });
-                }
+                // A log without velocity is predicted as if it stood still.
+                let v = if draggy { [0, 1, 2].map(|k| flight.velocity[k][i]) } else { [0.0; 3] };
+                let [fx, fy, fz] = force_in_body(&thrust, &drag, *u, self.voltage[f][i], v);
+                force[0].push(fx + x[OFFSET]);
+                force[1].push(fy + x[OFFSET + 1]);
+                force[2].push(fz);
             }
             for (out, force) in out.iter_mut().zip(force) {
                 out.push(flight.smooth(force, self.cutoff_hz));

@@ -1,8 +1,9 @@
 //! Which parameters of the model a log can tell, by the channels it has and what was flown.
 
 use super::Quality;
+use crate::flight::Log;
 use crate::flight::series::{held, interpolated};
-use crate::flight::spans::{contain, length};
+use crate::flight::spans::{Span, contain, length};
 use crate::stats::quantile;
 use serde::Serialize;
 
@@ -26,8 +27,7 @@ const SPEED: f64 = 3.0;
 const DISCHARGE_S: f64 = 20.0;
 
 /// The model's parameters in the order of its equations.
-pub fn told(quality: &Quality) -> Vec<Parameter> {
-    let Quality { log, usable, .. } = quality;
+pub fn told(log: &Log, usable: &[Span]) -> Vec<Parameter> {
     let times: Vec<f64> = log.imu.time_s.iter().copied().filter(|&t| contain(usable, t)).collect();
     // 5 to 95 % of a signal in flight, if it was measured.
     let range = |x: Vec<f64>| {
@@ -80,6 +80,6 @@ pub fn told(quality: &Quality) -> Vec<Parameter> {
 impl Quality {
     /// Why the log cannot tell the parameter of this name; none where it can.
     pub fn why_not(&self, name: &str) -> Option<String> {
-        told(self).into_iter().find(|parameter| parameter.name == name)?.why_not
+        self.parameters.iter().find(|parameter| parameter.name == name)?.why_not.clone()
     }
 }

@@ -4,7 +4,7 @@ use super::offset::{integrals, integrated, turns};
 use super::{Finding, Severity};
 use crate::dynamics::attitude::body_axes;
 use crate::flight::Log;
-use crate::flight::series::{held, interpolated};
+use crate::flight::series::{held, period};
 use crate::flight::spans::{Span, contain};
 use crate::stats::{correlation, mean, median};
 
@@ -121,12 +121,10 @@ fn velocity(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
     let odometry = &log.odometry;
     let times = &odometry.time_s;
     // Over a tenth of a second, noise of the position matters little.
-    let Some(stride) = (0.1 / crate::flight::series::period(times))
-        .is_finite()
-        .then(|| (0.1 / crate::flight::series::period(times)).ceil().max(1.0) as usize)
-    else {
+    if times.len() < 2 {
         return;
-    };
+    }
+    let stride = (0.1 / period(times)).ceil().max(1.0) as usize;
     for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
         let (mut from_position, mut measured) = (Vec::new(), Vec::new());
         for i in (stride..odometry.len()).step_by(stride) {
@@ -148,17 +146,4 @@ fn velocity(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
             problem("frame", "odometry", what, so, findings);
         }
     }
-    let jumps = outliers(&interpolated(times, &odometry.column(7), times, f64::INFINITY), times);
-    if jumps > 0 {
-        let what = format!("{jumps} velocities that no vehicle could reach from the one before");
-        let so = "they weigh little: fits are robust";
-        findings.push(Finding::new(Severity::Note, "outliers", "odometry", what, so));
-    }
-}
-
-/// Samples away from the median of their neighbours by more than 100 m/s2 could carry in that time.
-fn outliers(v: &[f64], times: &[f64]) -> usize {
-    (2..v.len().saturating_sub(2))
-        .filter(|&i| (v[i] - median(&v[i - 2..=i + 2])).abs() > 1.0 + 100.0 * (times[i] - times[i - 1]))
-        .count()
 }

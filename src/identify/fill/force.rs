@@ -1,7 +1,7 @@
 //! Thrust and drag, into the result.
 
 use crate::check::Invalid;
-use crate::dynamics::drag::ellipsoid;
+use crate::dynamics::drag::{ellipsoid, semi_axes};
 use crate::identify::data::{Data, Part};
 use crate::identify::estimate::Estimate;
 use crate::identify::force::{DRAG_AT, Force, TAU, THRUST, Terms};
@@ -130,9 +130,8 @@ fn keep_drag(all: &Solution, no_drag: Option<String>, out: &mut Identification) 
     // A semi-axis of zero would be no ellipsoid.
     let least = 1e-2 * k.iter().copied().fold(1e-4, f64::max);
     let drag = &mut out.vehicle.drag;
-    let unit = 0.5 * drag.air_density_kg_m3 * drag.coefficient * std::f64::consts::PI / out.vehicle.mass_kg;
-    let [x, y, z] = k.map(|k| k.max(least) / unit);
-    drag.semi_axes_m = [(y * z / x).sqrt(), (x * z / y).sqrt(), (x * y / z).sqrt()];
+    let k = k.map(|k| k.max(least) * out.vehicle.mass_kg);
+    drag.semi_axes_m = semi_axes(k, drag.coefficient, drag.air_density_kg_m3);
     out.drag.semi_axes_m = Some(drag.semi_axes_m);
     out.drag.coefficient = Some(drag.coefficient);
     out.assume("drag.coefficient", "the size of the body and its coefficient act alike; the semi-axes follow from it");
@@ -162,7 +161,6 @@ fn validate_force(force: &Force, all: &Solution, bias: Option<&Solution>, out: &
         out.channels.push(Channel::new(&name, "m/s2", 1.0, &learned, &validation));
     }
     if out.drag.k_1_m[0].value.is_some() {
-        let v = out.fastest_m_s;
-        out.drag.flown_m_s = v;
+        out.drag.flown_m_s = out.fastest_m_s;
     }
 }
