@@ -17,13 +17,7 @@ fn setup() -> (Config, Race) {
 /// The equations of motion: 2048 vehicles, 32 steps.
 fn physics(c: &mut Criterion) {
     let (_, race) = setup();
-    let state = State {
-        position: [0.0; 3],
-        velocity: [5.0, 0.0, 0.0],
-        attitude: [1.0, 0.0, 0.0, 0.0],
-        command: [0.0; 4],
-        voltage: 23.0,
-    };
+    let state = State::new([0.0; 3], [5.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0; 4], 23.0);
     let parameters = Parameters::new(&race.vehicle, &Factors::NOMINAL, DT);
     let mut group = c.benchmark_group("physics");
     group.throughput(Throughput::Elements(2048 * 32));

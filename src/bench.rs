@@ -118,13 +118,7 @@ fn best<T>(time: Duration, mut work: impl FnMut() -> T) -> f64 {
 
 fn physics(race: &Race, level: Level, threads: usize, steps: usize, time: Duration) -> f64 {
     let n = 2048 * threads;
-    let start = State {
-        position: [0.0; 3],
-        velocity: [5.0, 0.0, 0.0],
-        attitude: [1.0, 0.0, 0.0, 0.0],
-        command: [0.0; 4],
-        voltage: race.vehicle.battery.full_v,
-    };
+    let start = State::new([0.0; 3], [5.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0; 4], race.vehicle.battery.full_v);
     let parameters = Parameters::new(&race.vehicle, &Factors::NOMINAL, DT);
     let mut batch = Batch::new(&vec![(start, parameters); n]);
     let actions: Vec<_> = (0..n).map(|i| [0.1, -0.1, 0.01 * (i % 10) as f32, race.hover_command as f32]).collect();

@@ -7,12 +7,15 @@
 pub mod attitude;
 pub mod battery;
 pub mod drag;
+pub mod extended;
 pub mod response;
 pub mod thrust;
 
+use crate::effects;
 use crate::lane::{Lane, Real, build};
 use crate::vehicle::Vehicle;
 use attitude::{Quaternion, body_axes, compose, dot, small_rotation};
+use extended::{Beyond, Memory};
 
 /// State of one vehicle (paper Eq. 5). Body rates are not kept: they are `command * max_rate`.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +28,10 @@ pub struct State<R> {
     pub attitude: Quaternion<R>,
     /// Filtered commands u: roll, pitch, yaw, thrust, -1..1.
     pub command: [R; 4],
-    /// Battery voltage, V.
+    /// Battery voltage without load, V.
     pub voltage: R,
+    /// What only effects beyond the compact model need.
+    pub memory: Memory<R>,
 }
 
 /// The model's numbers as one step needs them. Forces are divided by the mass.
@@ -48,6 +53,8 @@ pub struct Parameters<R> {
     pub gravity: R,
     /// Battery voltage rate, V/s, negative.
     pub voltage_rate: R,
+    /// Effects beyond the compact model, and what they need.
+    pub beyond: Beyond<R>,
 }
 
 /// Factors on the nominal parameters that one episode draws (paper Eq. 13, Table 2).
@@ -57,11 +64,14 @@ pub struct Factors {
     pub max_rate: [f64; 3],
     pub thrust: f64,
     pub drag: f64,
+    /// What is added to the parameters of the effects, in their order.
+    pub effects: [f64; effects::COUNT],
 }
 
 impl Factors {
     /// The nominal vehicle.
-    pub const NOMINAL: Factors = Factors { time_constant: [1.0; 4], max_rate: [1.0; 3], thrust: 1.0, drag: 1.0 };
+    pub const NOMINAL: Factors =
+        Factors { time_constant: [1.0; 4], max_rate: [1.0; 3], thrust: 1.0, drag: 1.0, effects: [0.0; effects::COUNT] };
 }
 
 impl Parameters<f64> {
@@ -73,6 +83,7 @@ impl Parameters<f64> {
             1.0 - tau[i] * factors.time_constant[i] / dt * response::alpha(tau[i] * factors.time_constant[i], dt)
         });
         let max_rate = vehicle.max_rates_rad_s();
+        let effects = vehicle.effects.drawn(&factors.effects);
         Parameters {
             dt,
             alpha,
@@ -82,7 +93,22 @@ impl Parameters<f64> {
             drag: drag::ellipsoid(&vehicle.drag).map(|k| k * factors.drag / vehicle.mass_kg),
             gravity: vehicle.gravity_m_s2,
             voltage_rate: vehicle.battery.rate_v_s,
+            beyond: Beyond::new(vehicle, build!(|i| tau[i] * factors.time_constant[i]), effects, dt),
         }
+    }
+}
+
+impl State<f64> {
+    /// At the beginning of a flight whose commands were held at `command` before: position (m) and velocity (m/s) in the world,
+    /// attitude, voltage (V).
+    pub fn new(
+        position: [f64; 3],
+        velocity: [f64; 3],
+        attitude: Quaternion<f64>,
+        command: [f64; 4],
+        voltage: f64,
+    ) -> Self {
+        State { position, velocity, attitude, command, voltage, memory: Memory::before(command) }
     }
 }
 
@@ -96,6 +122,7 @@ impl<R: Copy> State<R> {
             attitude: self.attitude.map(&mut f),
             command: self.command.map(&mut f),
             voltage: f(self.voltage),
+            memory: self.memory.map(f),
         }
     }
 }
@@ -113,6 +140,7 @@ impl<R: Copy> Parameters<R> {
             drag: self.drag.map(&mut f),
             gravity: f(self.gravity),
             voltage_rate: f(self.voltage_rate),
+            beyond: self.beyond.map(f),
         }
     }
 }
@@ -120,9 +148,10 @@ impl<R: Copy> Parameters<R> {
 impl<L: Lane> State<L> {
     /// Replaces the state of one lane.
     pub fn set_lane(&mut self, lane: usize, new: &State<L::Elem>) {
-        let State { position, velocity, attitude, command, voltage } = self;
+        self.memory.set_lane(lane, &new.memory);
+        let State { position, velocity, attitude, command, voltage, .. } = self;
         let own = position.iter_mut().chain(velocity).chain(attitude).chain(command).chain([voltage]);
-        let State { position, velocity, attitude, command, voltage } = new;
+        let State { position, velocity, attitude, command, voltage, .. } = new;
         let new = position.iter().chain(velocity).chain(attitude).chain(command).chain([voltage]);
         own.zip(new).for_each(|(own, &new)| own.set(lane, new));
     }
@@ -131,10 +160,11 @@ impl<L: Lane> State<L> {
 impl<L: Lane> Parameters<L> {
     /// Replaces the parameters of one lane.
     pub fn set_lane(&mut self, lane: usize, new: &Parameters<L::Elem>) {
-        let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate } = self;
+        self.beyond.set_lane(lane, &new.beyond);
+        let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate, .. } = self;
         let own = alpha.iter_mut().chain(mean_alpha).chain(max_rate).chain(thrust).chain(drag);
         let own = own.chain([dt, gravity, voltage_rate]);
-        let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate } = new;
+        let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate, .. } = new;
         let new = alpha.iter().chain(mean_alpha).chain(max_rate).chain(thrust).chain(drag);
         own.zip(new.chain([dt, gravity, voltage_rate])).for_each(|(own, &new)| own.set(lane, new));
     }
@@ -144,7 +174,19 @@ impl<R: Real> State<R> {
     /// Body rates, rad/s, body frame.
     #[inline(always)]
     pub fn body_rates(&self, p: &Parameters<R>) -> [R; 3] {
+        if p.beyond.values.any() {
+            return extended::spin(p, self.command);
+        }
         build!(|i| self.command[i] * p.max_rate[i])
+    }
+
+    /// Voltage at the battery's terminals, V.
+    #[inline(always)]
+    pub fn terminal_voltage(&self, p: &Parameters<R>) -> R {
+        if p.beyond.values.any() {
+            return extended::terminal(p, self.voltage, self.command[3], self.memory.polarisation, R::zero()).0;
+        }
+        self.voltage
     }
 }
 
@@ -153,6 +195,9 @@ impl<R: Real> State<R> {
 pub fn specific_force<R: Real>(s: &State<R>, p: &Parameters<R>) -> [R; 3] {
     let axes = body_axes(s.attitude);
     let velocity = build!(|i| dot(axes[i], s.velocity));
+    if p.beyond.values.any() {
+        return extended::force(p, &extended::Moment::of(s, p, axes, velocity));
+    }
     force_in_body(&p.thrust, &p.drag, s.command[3], s.voltage, velocity)
 }
 
@@ -172,6 +217,9 @@ pub fn force_in_body<R: Real>(thrust: &[R; 6], drag: &[R; 3], command: R, voltag
 /// constants are as short as the step, and a plain Euler step would be twenty times worse.
 #[inline(always)]
 pub fn step<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R> {
+    if p.beyond.values.any() {
+        return extended::step(s, p, action);
+    }
     let half_dt = p.dt * R::of(0.5);
     let mean: [R; 4] = build!(|i| response::toward(s.command[i], action[i], p.mean_alpha[i]));
     let command = build!(|i| response::toward(s.command[i], action[i], p.alpha[i]));
@@ -193,5 +241,6 @@ pub fn step<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R
     let acceleration: [R; 3] = build!(|i| early[i].mul_add(-damping, free[i]));
     let velocity: [R; 3] = build!(|i| acceleration[i].mul_add(p.dt, s.velocity[i]));
     let position = build!(|i| (s.velocity[i] + velocity[i]).mul_add(half_dt, s.position[i]));
-    State { position, velocity, attitude, command, voltage: battery::discharged(voltage, p.voltage_rate, half_dt) }
+    let voltage = battery::discharged(voltage, p.voltage_rate, half_dt);
+    State { position, velocity, attitude, command, voltage, memory: s.memory }
 }

@@ -180,13 +180,7 @@ impl Race {
 
     /// A block whose 16 episodes have not begun; give every lane a start with [`Block::begin`].
     pub fn empty_block<L: Lane32>(&self, first: u32) -> Block<L> {
-        let state = State {
-            position: [0.0; 3],
-            velocity: [0.0; 3],
-            attitude: [1.0, 0.0, 0.0, 0.0],
-            command: [0.0; 4],
-            voltage: self.vehicle.battery.full_v,
-        };
+        let state = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], [0.0; 4], self.vehicle.battery.full_v);
         Block {
             state: state.map(L::of),
             parameters: Parameters::new(&self.vehicle, &Factors::NOMINAL, self.dt).map(L::of),

@@ -44,13 +44,7 @@ pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Kind], seed:
     };
     let mut pilot = Pilot::new(seed, limits).only(kinds);
     let mut recorder = Recorder::new(vehicle, sensors, seed);
-    let mut state = State {
-        position: [0.0; 3],
-        velocity: [0.0; 3],
-        attitude: [1.0, 0.0, 0.0, 0.0],
-        command: [0.0, 0.0, 0.0, -1.0],
-        voltage: battery.full_v,
-    };
+    let mut state = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], battery.full_v);
     recorder.rest(true);
     let mut landed_s = 0.0;
     while recorder.time_s() < seconds - 0.5 * DT && landed_s < AFTER_S {

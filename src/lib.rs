@@ -16,6 +16,7 @@ pub mod rng;
 pub mod stats;
 // What is raced, by what, and how it moves.
 pub mod dynamics;
+pub mod effects;
 pub mod track;
 pub mod vehicle;
 // Batches of vehicles, networks, flight logs, the excitation pilot.

@@ -1,10 +1,12 @@
 //! The vehicle: the parameters of the compact model, as identified from its flights (paper section 4.1).
 
+pub mod extension;
 pub mod randomize;
 
 use crate::check::{BadInput, Check, Invalid};
 use crate::document::Library;
 use crate::dynamics::thrust::specific_thrust;
+use extension::Extension;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -35,6 +37,9 @@ pub struct Vehicle {
     pub max_rate_deg_s: MaxRates,
     pub drag: Drag,
     pub battery: Battery,
+    /// What the vehicle does beyond the compact model.
+    #[serde(default, skip_serializing_if = "Extension::is_empty")]
+    pub effects: Extension,
     /// Where the numbers come from, if from flights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub identified: Option<Identified>,
@@ -207,6 +212,7 @@ impl Check for Vehicle {
         Invalid::unless(full_v.is_finite() && full_v > empty_v, "battery.full_v", full_v, &expected, "")?;
         let discharges = rate_v_s.is_finite() && rate_v_s <= 0.0;
         Invalid::unless(discharges, "battery.rate_v_s", rate_v_s, "zero or less", "discharge is negative")?;
+        self.effects.check().map_err(|invalid| invalid.within("effects"))?;
         self.check_thrust()
     }
 }

@@ -11,13 +11,7 @@ fn numbers<const N: usize>(value: &Value) -> [f64; N] {
 }
 
 fn state(x: [f64; 15]) -> State<f64> {
-    State {
-        position: [x[0], x[1], x[2]],
-        velocity: [x[3], x[4], x[5]],
-        attitude: [x[6], x[7], x[8], x[9]],
-        command: [x[10], x[11], x[12], x[13]],
-        voltage: x[14],
-    }
+    State::new([x[0], x[1], x[2]], [x[3], x[4], x[5]], [x[6], x[7], x[8], x[9]], [x[10], x[11], x[12], x[13]], x[14])
 }
 
 fn distance<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {

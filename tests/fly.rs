@@ -76,12 +76,8 @@ fn specific_force_is_the_acceleration() {
 fn specific_force_of_fall_and_hover() {
     let mut vehicle = seed_class();
     let hover = vehicle.hover_command(23.0);
-    let state = |thrust: f64, velocity: [f64; 3]| State {
-        position: [0.0; 3],
-        velocity,
-        attitude: [0.8, 0.6, 0.0, 0.0],
-        command: [0.0, 0.0, 0.0, thrust],
-        voltage: 23.0,
+    let state = |thrust: f64, velocity: [f64; 3]| {
+        State::new([0.0; 3], velocity, [0.8, 0.6, 0.0, 0.0], [0.0, 0.0, 0.0, thrust], 23.0)
     };
     let parameters = Parameters::new(&vehicle, &Factors::NOMINAL, DT);
     let [x, y, z] = specific_force(&state(hover, [0.0; 3]), &parameters);

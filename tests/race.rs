@@ -27,7 +27,7 @@ fn race(settings: &str) -> (Race, Track) {
 fn block(race: &Race, position: [f64; 3], velocity: [f64; 3], target: usize) -> Block<L> {
     let parameters = racer::dynamics::Parameters::new(&race.vehicle, &Factors::NOMINAL, DT);
     let command = [0.0, 0.0, 0.0, race.hover_command];
-    let state = State { position, velocity, attitude: [0.0, 0.0, 0.0, 1.0], command, voltage: 23.5 };
+    let state = State::new(position, velocity, [0.0, 0.0, 0.0, 1.0], command, 23.5);
     let mut block = race.empty_block(0);
     (0..LANES).for_each(|lane| block.begin(race, lane, &Start { state, parameters, target }));
     block
@@ -166,7 +166,7 @@ fn randomised_parameters() {
     let rng = Philox::new(9);
     let draws: Vec<[f64; 9]> = (0..4000)
         .map(|i| {
-            let f = race.config.randomize.draw(&mut rng.sequence(Stream::Reset, i, 0));
+            let f = race.config.randomize.draw(&race.vehicle, &mut rng.sequence(Stream::Reset, i, 0));
             let [a, b, c, d] = f.time_constant;
             let [x, y, z] = f.max_rate;
             [a, b, c, d, x, y, z, f.thrust, f.drag]

@@ -99,13 +99,13 @@ fn the_crates_model_agrees() {
         let mut state = State { velocity: Vector3::new(12.0, -5.0, 3.0), ..aloft(&vehicle, 0.1) };
         state.position.z = 0.5;
         state.velocity.z = 20.0;
-        let mut own = dynamics::State {
-            position: state.position.into(),
-            velocity: state.velocity.into(),
-            attitude: [1.0, 0.0, 0.0, 0.0],
-            command: state.response.into(),
-            voltage: state.voltage,
-        };
+        let mut own = dynamics::State::new(
+            state.position.into(),
+            state.velocity.into(),
+            [1.0, 0.0, 0.0, 0.0],
+            state.response.into(),
+            state.voltage,
+        );
         for k in 0..2000 {
             let phase = f64::from(k / 20 * 20);
             let command = [(0.013 * phase).sin(), (0.008 * phase).cos(), (0.003 * phase).sin(), 0.3];

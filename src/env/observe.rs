@@ -115,7 +115,7 @@ pub fn observe<L: Lane<Elem = f32>>(
     let mut rates: [L; 3] = build!(|i| {
         attitude[0][i].mul_add(body_rates[0], attitude[1][i].mul_add(body_rates[1], attitude[2][i] * body_rates[2]))
     });
-    let mut voltage = block.state.voltage;
+    let mut voltage = block.state.terminal_voltage(&block.parameters);
     if let Some(noise) = noise {
         position = add(position, noise.position);
         velocity = add(velocity, noise.velocity);

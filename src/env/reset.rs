@@ -63,7 +63,7 @@ pub enum Place {
 pub fn draw(race: &Race, rng: &mut Sequence, place: Place, factors: Option<Factors>) -> Start {
     let config = &race.config;
     let nominal = factors.is_some();
-    let factors = factors.unwrap_or_else(|| config.randomize.draw(rng));
+    let factors = factors.unwrap_or_else(|| config.randomize.draw(&race.vehicle, rng));
     let voltage = if nominal {
         race.vehicle.battery.full_v
     } else {
@@ -118,11 +118,5 @@ fn on_spline(race: &Race, rng: &mut Sequence, voltage: f64) -> (State<f64>, usiz
 const REFLECT_WITHIN_M: f64 = 2.0;
 
 fn at_rest(position: Vector3<f64>, attitude: UnitQuaternion<f64>, command: [f64; 4], voltage: f64) -> State<f64> {
-    State {
-        position: position.into(),
-        velocity: [0.0; 3],
-        attitude: [attitude.w, attitude.i, attitude.j, attitude.k],
-        command,
-        voltage,
-    }
+    State::new(position.into(), [0.0; 3], [attitude.w, attitude.i, attitude.j, attitude.k], command, voltage)
 }

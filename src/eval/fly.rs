@@ -193,6 +193,6 @@ fn moment<L: Lane32>(block: &Block<L>, action: [L; ACTIONS], time_s: f64) -> Mom
     let [vx, vy, vz] = block.state.velocity.map(|v| v.get(0));
     let [qw, qx, qy, qz] = block.state.attitude.map(|v| v.get(0));
     let [roll, pitch, yaw, thrust] = action.map(|v| v.get(0));
-    let (target_gate, voltage) = (block.target[0], block.state.voltage.get(0));
+    let (target_gate, voltage) = (block.target[0], block.state.terminal_voltage(&block.parameters).get(0));
     Moment { time_s, x, y, z, vx, vy, vz, qw, qx, qy, qz, roll, pitch, yaw, thrust, target_gate, voltage }
 }

@@ -122,7 +122,8 @@ impl<'a> Recorder<'a> {
             self.log.odometry.push(time_s, [x, y, z, qw, qx, qy, qz, u, v, w]);
         }
         if due(&self.log.battery, battery.rate_hz, time_s) {
-            let [voltage] = battery.voltage.read([state.voltage], self.bias.voltage, &mut self.battery);
+            let [voltage] =
+                battery.voltage.read([state.terminal_voltage(&self.parameters)], self.bias.voltage, &mut self.battery);
             self.log.battery.push(time_s, [voltage, f64::NAN]);
         }
     }
