@@ -26,6 +26,7 @@ pub mod pilot;
 pub mod policy;
 pub mod sim;
 // The race, learning it, scoring it, recording it; the vehicle from its flights.
+pub mod diagnose;
 pub mod env;
 pub mod eval;
 pub mod fly;

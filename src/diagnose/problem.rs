@@ -1,0 +1,140 @@
+//! All flights as rows of residuals by channel, and their derivatives by any number of the model.
+
+use super::model::Model;
+use super::predict::{CHANNELS, Predicted, measured};
+use super::record::Record;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// One row of a channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    pub flight: u32,
+    /// Index into the channel of its flight.
+    pub index: u32,
+    /// Stretch of time, counted over all flights.
+    pub block: u32,
+    /// The sample of the IMU that it begins with.
+    pub sample: u32,
+    /// Whether the row before is its neighbour in time.
+    pub follows: bool,
+}
+
+/// Values by channel; empty where there is nothing.
+pub type Values = [Vec<f64>; CHANNELS];
+
+/// Flights and the model they are held against.
+pub struct Problem {
+    pub model: Model,
+    pub records: Vec<Record>,
+    pub rows: [Vec<Row>; CHANNELS],
+    pub measured: Values,
+    pub blocks: usize,
+}
+
+/// A prediction of every flight.
+pub type State = Vec<Predicted>;
+
+impl Problem {
+    pub fn new(model: Model, records: Vec<Record>) -> Self {
+        let mut out = Self { model, records, rows: Default::default(), measured: Default::default(), blocks: 0 };
+        let start = out.predict(&out.model.base);
+        let gravity = out.model.vehicle().gravity_m_s2;
+        for (f, record) in out.records.iter().enumerate() {
+            let seen = measured(record, gravity);
+            for c in 0..CHANNELS {
+                let mut before = usize::MAX;
+                for (i, predicted) in start[f].channels[c].iter().enumerate() {
+                    if !(predicted.is_finite() && seen[c][i].is_finite()) {
+                        continue;
+                    }
+                    let [from, to] = record.place(c, i);
+                    let follows = before != usize::MAX && before + 1 == i && record.adjoins(c, i);
+                    before = i;
+                    let block = record.block[(from + to) / 2];
+                    out.rows[c].push(Row { flight: f as u32, index: i as u32, block, sample: from as u32, follows });
+                    out.measured[c].push(seen[c][i]);
+                    out.blocks = out.blocks.max(block as usize + 1);
+                }
+            }
+        }
+        out
+    }
+
+    /// Predicts every flight at `x`.
+    pub fn predict(&self, x: &[f64]) -> State {
+        self.records.iter().enumerate().map(|(f, record)| Predicted::new(&self.model, record, f, x)).collect()
+    }
+
+    /// Predicts at `x`, which differs from that of `state` in the numbers `which`.
+    pub fn change(&self, state: &State, which: &[usize], x: &[f64]) -> State {
+        let what = self.model.anew(which, x);
+        let one = |(f, record): (usize, &Record)| state[f].changed(what, &self.model, record, f, x);
+        self.records.iter().enumerate().map(one).collect()
+    }
+
+    /// A prediction's rows.
+    pub fn pick(&self, state: &State) -> Values {
+        std::array::from_fn(|c| {
+            self.rows[c].iter().map(|row| state[row.flight as usize].channels[c][row.index as usize]).collect()
+        })
+    }
+
+    /// Measured less predicted.
+    pub fn residuals(&self, state: &State) -> Values {
+        let predicted = self.pick(state);
+        std::array::from_fn(|c| self.measured[c].iter().zip(&predicted[c]).map(|(m, p)| m - p).collect())
+    }
+
+    /// Change of the prediction per unit of number `k` at `x`, whose prediction is `state`.
+    pub fn slope(&self, state: &State, x: &[f64], k: usize) -> Values {
+        let number = &self.model.numbers[k];
+        let step = if x[k] + number.step <= number.high { number.step } else { -number.step };
+        self.secant(state, x, &[(k, x[k] + step)], 1.0 / step)
+    }
+
+    /// `scale` times the change of the prediction when numbers take other values. A channel that does not change is empty.
+    pub fn secant(&self, state: &State, x: &[f64], to: &[(usize, f64)], scale: f64) -> Values {
+        let mut moved = x.to_vec();
+        to.iter().for_each(|&(k, value)| moved[k] = value);
+        let which: Vec<usize> = to.iter().map(|&(k, _)| k).collect();
+        let changed = self.change(state, &which, &moved);
+        std::array::from_fn(|c| {
+            let same = |f: usize| Arc::ptr_eq(&changed[f].channels[c], &state[f].channels[c]);
+            if (0..state.len()).all(same) {
+                return Vec::new();
+            }
+            let one = |row: &Row| {
+                let (f, i) = (row.flight as usize, row.index as usize);
+                (changed[f].channels[c][i] - state[f].channels[c][i]) * scale
+            };
+            let change: Vec<f64> = self.rows[c].iter().map(one).collect();
+            if change.iter().all(|d| *d == 0.0) { Vec::new() } else { change }
+        })
+    }
+
+    /// [`Problem::slope`] of several numbers, side by side.
+    pub fn slopes(&self, state: &State, x: &[f64], which: &[usize]) -> Vec<Values> {
+        which.par_iter().map(|&k| self.slope(state, x, k)).collect()
+    }
+}
+
+impl Record {
+    /// First sample of value `i` of channel `c`, and one beyond its last.
+    pub fn place(&self, c: usize, i: usize) -> [usize; 2] {
+        match c {
+            0..6 => self.bins[i],
+            6..12 => self.windows[i],
+            _ => [self.volts[i].0, self.volts[i].0 + 1],
+        }
+    }
+
+    /// Whether value `i` of channel `c` follows the one before without a gap.
+    fn adjoins(&self, c: usize, i: usize) -> bool {
+        match c {
+            0..6 => self.bins[i - 1][1] == self.bins[i][0],
+            6..12 => self.windows[i - 1][1] == self.windows[i][0],
+            _ => true,
+        }
+    }
+}

@@ -1,0 +1,290 @@
+//! Which effects explain the residuals: rank by score, refit the best and their rivals, keep the best, and again.
+
+use super::fit::{self, Point};
+use super::gram::{Grams, score};
+use super::model::{BEGIN, DISCHARGE, cards, span};
+use super::problem::{Problem, Values};
+use super::whiten::Whitener;
+use crate::effects::{Card, Kind};
+use rayon::prelude::*;
+
+/// Most effects that are added.
+const MOST: usize = 8;
+/// Candidates refitted in a round, besides the rivals of the first.
+const SHORT_LIST: usize = 6;
+/// Least fall of the whitened squares, and least number of agreeing stretches, for a candidate to be added.
+pub const GAIN: f64 = 30.0;
+pub const EVIDENCE: f64 = 9.0;
+/// Rivals that come so near the best by standard deviations of their difference are a tie.
+pub const TIE: f64 = 2.5;
+/// Share of its information that a candidate keeps beside the base; below, the base absorbs it.
+pub const ABSORBED: f64 = 2e-3;
+
+/// A way to begin with an effect: numbers and their values.
+#[derive(Clone, Debug)]
+pub struct Direction {
+    pub card: &'static Card,
+    pub start: Vec<(usize, f64)>,
+}
+
+/// An effect that was tried beside what stands.
+pub struct Trial {
+    pub card: &'static Card,
+    pub point: Point,
+    /// Fall of the whitened squares.
+    pub gain: f64,
+}
+
+/// What a log could show of an effect, before any residual is looked at.
+#[derive(Clone, Debug)]
+pub struct Reach {
+    pub card: &'static Card,
+    /// Information on the main parameter that the base leaves, and the share of all that it is.
+    pub information: f64,
+    pub kept: f64,
+    /// The rival most like it, and how much (correlation of what is left).
+    pub nearest: Option<(&'static str, f64)>,
+}
+
+/// What selection ended with.
+pub struct Selection {
+    pub point: Point,
+    pub whitener: Whitener,
+    /// Effects added, in the order of their gain when added, with those that nearly took their place.
+    pub added: Vec<Added>,
+    /// The fit of the compact model alone, under the same whitening.
+    pub base: Point,
+    pub reach: Vec<Reach>,
+}
+
+/// An added effect.
+#[derive(Clone, Debug)]
+pub struct Added {
+    pub card: &'static Card,
+    pub ties: Vec<&'static Card>,
+}
+
+/// The numbers of the compact model and of constant sensor errors that the flights tell anything about.
+pub fn base_numbers(problem: &Problem) -> Vec<usize> {
+    let biases = ["gyro_bias", "accel_bias"].into_iter().filter_map(crate::effects::card).flat_map(span);
+    let volts = BEGIN..problem.model.numbers.len();
+    let own = cards().flat_map(span).filter(|&k| problem.model.base[k] != 0.0);
+    let mut all: Vec<usize> = (0..=DISCHARGE).chain(biases).chain(volts).chain(own).collect();
+    all.sort_unstable();
+    all.dedup();
+    let state = problem.predict(&problem.model.base);
+    all.retain(|&k| !problem.slope(&state, &problem.model.base, k).iter().all(Vec::is_empty));
+    all
+}
+
+/// Ways to begin with an effect: one size where it is linear, several where a large one looks unlike a small one.
+pub fn directions(card: &'static Card) -> Vec<Direction> {
+    let at = span(card);
+    let sizes = |i: usize| {
+        let [small, large] = card.parameters[i].typical;
+        [small, (small * large).sqrt(), large]
+    };
+    let numbers: Vec<usize> = at.collect();
+    let shape = card.parameters.iter().position(|p| p.name == "tau" && card.parameters.len() > 1);
+    if let Some(shape) = shape {
+        let [small, _, large] = sizes(shape);
+        let grid = (0..4).map(|i| small * (large / small).powf(f64::from(i) / 3.0));
+        let main = 1 - shape;
+        return grid
+            .map(|tau| Direction { card, start: vec![(numbers[main], sizes(main)[1]), (numbers[shape], tau)] })
+            .collect();
+    }
+    if card.parameters.len() > 1 {
+        return numbers.iter().enumerate().map(|(i, &k)| Direction { card, start: vec![(k, sizes(i)[0])] }).collect();
+    }
+    let signs: &[f64] = if card.parameters[0].low < 0.0 { &[1.0, -1.0] } else { &[1.0] };
+    let wanted = if card.kind == Kind::Timing || card.id == "propwash" || card.kind == Kind::Sensor { 3 } else { 1 };
+    let sizes = sizes(0).into_iter().take(wanted);
+    sizes
+        .flat_map(|s| signs.iter().map(move |sign| sign * s))
+        .map(|s| Direction { card, start: vec![(numbers[0], s)] })
+        .collect()
+}
+
+/// Candidates: effects whose mean can be seen, that the base does not already hold.
+pub fn candidates(problem: &Problem, held: &[&'static Card]) -> Vec<&'static Card> {
+    let in_base = |card: &Card| span(card).any(|k| problem.model.base[k] != 0.0);
+    let bias = |card: &Card| matches!(card.id, "gyro_bias" | "accel_bias");
+    cards()
+        .filter(|card| card.kind != Kind::Random && !bias(card) && !in_base(card))
+        .filter(|card| held.iter().all(|h| h.id != card.id))
+        .collect()
+}
+
+/// All directions with the change of the prediction that each makes, whitened; those that change nothing are left out.
+fn columns(
+    problem: &Problem,
+    whitener: &Whitener,
+    point: &Point,
+    cards: &[&'static Card],
+) -> Vec<(Direction, Values, Values)> {
+    let all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
+    let one = |d: Direction| {
+        let change = problem.secant(&point.state, &point.x, &d.start, 1.0);
+        let finite = change.iter().flatten().all(|x| x.is_finite());
+        let white = whitener.apply(&change, &problem.rows);
+        (finite && !change.iter().all(Vec::is_empty)).then_some((d, change, white))
+    };
+    all.into_par_iter().filter_map(one).collect()
+}
+
+/// Adds effects until none is worth it.
+pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection {
+    let free = base_numbers(problem);
+    watch("fitting the base", 0.1);
+    let plain = problem.residuals(&problem.predict(&problem.model.base));
+    let mut whitener = Whitener::of(&plain, &problem.rows);
+    let mut point = fit::fit(problem, &whitener, &problem.model.base, &free);
+    let mut added: Vec<Added> = Vec::new();
+    let mut reach = Vec::new();
+    for round in 0..MOST {
+        watch("weighing causes", 0.2 + 0.6 * round as f64 / MOST as f64);
+        let held: Vec<&'static Card> = added.iter().map(|a| a.card).collect();
+        let cards = candidates(problem, &held);
+        let mut found = columns(problem, &whitener, &point, &cards);
+        // Noise is what is left when everything is taken off that any cause could explain.
+        for _ in 0..2 {
+            whitener = saturated(problem, &whitener, &point, &found);
+            point = fit::fit(problem, &whitener, &point.x, &point.free);
+            found.iter_mut().for_each(|(_, change, white)| *white = whitener.apply(change, &problem.rows));
+        }
+        let (scored, reached) = rank(problem, &whitener, &point, &found);
+        if round == 0 {
+            reach = reached;
+        }
+        let trials = try_best(problem, &whitener, &point, &found, &scored);
+        let Some(best) = trials.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)) else { break };
+        if std::env::var("RACER_TRACE").is_ok() {
+            for t in &trials {
+                eprintln!(
+                    "round {round}: {} gain {:.1} {:?}",
+                    t.card.id,
+                    t.gain,
+                    span(t.card).map(|k| t.point.x[k]).collect::<Vec<_>>()
+                );
+            }
+        }
+        if best.gain < GAIN {
+            break;
+        }
+        let ties = trials.iter().filter(|t| t.card.id != best.card.id && tied(best, t)).map(|t| t.card).collect();
+        added.push(Added { card: best.card, ties });
+        point = fit::fit(problem, &whitener, &best.point.x, &best.point.free);
+    }
+    let base = if added.is_empty() { point.clone() } else { fit::fit(problem, &whitener, &problem.model.base, &free) };
+    Selection { point, whitener, added, base, reach }
+}
+
+/// Whether a trial comes so near the best that their stretches of time do not decide.
+fn tied(best: &Trial, other: &Trial) -> bool {
+    let differences: Vec<f64> = other.point.cost.iter().zip(&best.point.cost).map(|(a, b)| a - b).collect();
+    let sum: f64 = differences.iter().sum();
+    let spread = differences.iter().map(|d| d * d).sum::<f64>().sqrt();
+    other.gain > GAIN && sum < TIE * spread
+}
+
+/// The whitener of what is left when all columns are taken off.
+fn saturated(problem: &Problem, whitener: &Whitener, point: &Point, found: &[(Direction, Values, Values)]) -> Whitener {
+    let residual = whitener.apply(&point.residual, &problem.rows);
+    let all: Vec<&Values> = point.white.iter().chain(found.iter().map(|(_, _, w)| w)).chain([&residual]).collect();
+    let grams = Grams::new(&all, &problem.rows, problem.blocks);
+    let n = all.len() - 1;
+    let own: Vec<usize> = (0..n).collect();
+    let square = Grams::pick(&grams.sum, &own, &own);
+    // Columns at several sizes of one effect are nearly the same: a small ridge decides among them.
+    let ridge: Vec<f64> = (0..n).map(|i| 1e-4 * square[(i, i)] + 1e-12).collect();
+    let Some(inner) = super::gram::inverse(&square, &ridge) else { return whitener.clone() };
+    let beta = inner * Grams::pick(&grams.sum, &own, &[n]);
+    let mut left = point.residual.clone();
+    let raw: Vec<Values> = point.free.par_iter().map(|&k| problem.slope(&point.state, &point.x, k)).collect();
+    for (j, column) in raw.iter().chain(found.iter().map(|(_, change, _)| change)).enumerate() {
+        for (left, column) in left.iter_mut().zip(column) {
+            left.iter_mut().zip(column).for_each(|(l, x)| *l -= beta[(j, 0)] * x);
+        }
+    }
+    Whitener::of(&left, &problem.rows)
+}
+
+/// Directions by the expected fall of the whitened squares, the best first; and what the log could show of each effect.
+fn rank(
+    problem: &Problem,
+    whitener: &Whitener,
+    point: &Point,
+    found: &[(Direction, Values, Values)],
+) -> (Vec<(usize, f64, f64)>, Vec<Reach>) {
+    let residual = whitener.apply(&point.residual, &problem.rows);
+    let n = point.white.len();
+    let all: Vec<&Values> = point.white.iter().chain(found.iter().map(|(_, _, w)| w)).chain([&residual]).collect();
+    let grams = Grams::new(&all, &problem.rows, problem.blocks);
+    let rest: Vec<usize> = (0..n).collect();
+    let mut prior: Vec<f64> = point.free.iter().map(|&k| problem.model.numbers[k].trust.powi(-2)).collect();
+    prior.resize(all.len(), 0.0);
+    let scores: Vec<_> =
+        (0..found.len()).into_par_iter().map(|j| score(&grams, &rest, &[n + j], all.len() - 1, &prior)).collect();
+    let mut order: Vec<(usize, f64, f64)> = Vec::new();
+    for (j, s) in scores.iter().enumerate() {
+        if let Some(s) = s
+            && s.information[0] > ABSORBED * s.raw[0]
+        {
+            order.push((j, s.gain, s.evidence));
+        }
+    }
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut reach: Vec<Reach> = Vec::new();
+    for (j, s) in scores.iter().enumerate() {
+        let (Some(s), card) = (s, found[j].0.card) else { continue };
+        if reach.iter().any(|r| r.card.id == card.id) {
+            continue;
+        }
+        let size = found[j].0.start[0].1;
+        let (information, kept) = (s.information[0] / (size * size), s.information[0] / s.raw[0].max(1e-300));
+        let near = |i: usize| {
+            let pair = score(&grams, &rest, &[n + j, n + i], all.len() - 1, &prior)?;
+            // Information on the first that the second leaves, as a share.
+            let alone = s.information[0];
+            let other = score(&grams, &[&rest[..], &[n + i]].concat(), &[n + j], all.len() - 1, &prior)?;
+            let _ = pair;
+            Some((found[i].0.card.id, (1.0 - other.information[0] / alone).clamp(0.0, 1.0).sqrt()))
+        };
+        let rivals = (0..found.len()).filter(|&i| card.rivals.contains(&found[i].0.card.id));
+        let nearest = rivals.filter_map(near).max_by(|a, b| a.1.total_cmp(&b.1));
+        reach.push(Reach { card, information, kept, nearest });
+    }
+    (order, reach)
+}
+
+/// Refits the first of the ranking, and the rivals of the very first.
+fn try_best(
+    problem: &Problem,
+    whitener: &Whitener,
+    point: &Point,
+    found: &[(Direction, Values, Values)],
+    order: &[(usize, f64, f64)],
+) -> Vec<Trial> {
+    let mut chosen: Vec<usize> = Vec::new();
+    for &(j, gain, evidence) in order {
+        let card = found[j].0.card;
+        let known = chosen.iter().any(|&i| found[i].0.card.id == card.id);
+        let leader = chosen.first().map(|&i| found[i].0.card);
+        let rival = leader.is_some_and(|l| l.rivals.contains(&card.id) || card.rivals.contains(&l.id));
+        if !known && gain > 0.5 * GAIN && evidence > 0.5 * EVIDENCE && (chosen.len() < SHORT_LIST || rival) {
+            chosen.push(j);
+        }
+    }
+    let before = point.total();
+    let one = |&j: &usize| {
+        let Direction { card, start } = &found[j].0;
+        let own: Vec<usize> = span(card).collect();
+        let begin: Vec<f64> =
+            own.iter().map(|k| start.iter().find(|(i, _)| i == k).map_or(0.0, |(_, value)| *value)).collect();
+        let point = fit::refit(problem, whitener, point, &own, &begin);
+        let gain = before - point.total();
+        Trial { card, point, gain }
+    };
+    chosen.par_iter().map(one).collect()
+}
