@@ -152,12 +152,19 @@ macro_rules! effects {
     };
 }
 
+// The order is that of every stage: what scales the thrust comes before what adds to it, what scales everything last.
 effects! {
     model:
         rate_delay thrust_delay rate_second_order rate_slew_limit
-        axial_inflow;
+        rate_expo response_voltage rate_cross_coupling gyroscopic_coupling yaw_authority_loss weak_motor thrust_asymmetric_lag
+        voltage_sag voltage_relaxation ocv_curve
+        voltage_compensation throttle_offset mixer_thrust_loss thrust_fade ground_effect propwash
+        axial_inflow translational_lift rate_thrust_coupling
+        rotor_drag drag_asymmetry body_lift vertical_drag steady_wind
+        mass_or_density;
     log:
-        imu_lever_arm;
+        stream_offset clock_skew velocity_lag command_dropout gusts
+        imu_lever_arm imu_misalignment accel_scale gyro_scale accel_bias gyro_bias vibration_rectification;
 }
 
 /// Where the parameters of effect `index` of `cards` begin among those of all.
@@ -231,5 +238,85 @@ impl<L: Lane> Values<L> {
     pub fn set_lane(&mut self, lane: usize, new: &Values<L::Elem>) {
         self.active |= new.active;
         self.numbers.iter_mut().zip(&new.numbers).for_each(|(own, &new)| own.set(lane, new));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    fn all() -> impl Iterator<Item = &'static Card> {
+        MODEL.iter().chain(&LOG).copied()
+    }
+
+    #[test]
+    fn names_are_unique_and_every_rival_is_one() {
+        let ids: BTreeSet<_> = all().map(|card| card.id).collect();
+        assert_eq!(ids.len(), MODEL.len() + LOG.len());
+        for card in all() {
+            let names: BTreeSet<_> = card.parameters.iter().map(|p| p.name).collect();
+            assert_eq!(names.len(), card.parameters.len(), "{}", card.id);
+            for rival in card.rivals {
+                let other = super::card(rival).unwrap_or_else(|| panic!("{}: {rival} is no effect", card.id));
+                assert!(rival != &card.id && other.rivals.contains(&card.id), "{} and {rival}", card.id);
+            }
+        }
+    }
+
+    #[test]
+    fn the_pilot_can_fly_every_manoeuvre() {
+        for card in all() {
+            assert!(!card.manoeuvre.1.is_empty(), "{}", card.id);
+            for kind in card.manoeuvre.1 {
+                assert!(crate::pilot::Kind::named(kind).is_some(), "{}: {kind}", card.id);
+            }
+        }
+    }
+
+    #[test]
+    fn bounds_hold_absence_and_the_typical() {
+        for card in all() {
+            assert!(!card.parameters.is_empty() && !card.channels.is_empty(), "{}", card.id);
+            for Parameter { name, low, high, typical: [least, most], .. } in card.parameters {
+                assert!((*low..=*high).contains(&0.0), "{}.{name}", card.id);
+                assert!(0.0 < *least && least < most && most <= high, "{}.{name}", card.id);
+            }
+        }
+    }
+
+    #[test]
+    fn spans_are_side_by_side() {
+        let mut end = 0;
+        for card in all() {
+            let span = span(card.id).expect("listed");
+            assert_eq!((span.start, span.len()), (end, card.parameters.len()), "{}", card.id);
+            end = span.end;
+        }
+        assert_eq!(end, COUNT + LOG_COUNT);
+        assert!(span("nothing").is_none() && card("nothing").is_none());
+    }
+
+    #[test]
+    fn sensors_read_as_their_equations_say() {
+        let read = |id: &str, sizes: &[f64]| {
+            let mut k = [0.0; LOG_COUNT];
+            let span = span(id).expect("listed");
+            k[span.start - COUNT..span.end - COUNT].copy_from_slice(sizes);
+            let mut sensed =
+                Sensed { rates: [1.0, 2.0, 3.0], acceleration: [0.0; 3], force: [0.0, 0.0, 10.0], throttle: 0.5 };
+            sense(&k, &mut sensed);
+            (sensed.rates, sensed.force)
+        };
+        assert_eq!(read("stream_offset", &[0.01]), ([1.0, 2.0, 3.0], [0.0, 0.0, 10.0]));
+        // w x (w x r) of r = x: (w . r) w - w^2 r.
+        assert_eq!(read("imu_lever_arm", &[1.0, 0.0, 0.0]).1, [1.0 - 14.0, 2.0, 10.0 + 3.0]);
+        // r x f of r = x and f = z is -y.
+        assert_eq!(read("imu_misalignment", &[0.1, 0.0, 0.0]), ([1.0, 2.0 + 0.1 * 3.0, 3.0 - 0.2], [0.0, 1.0, 10.0]));
+        assert_eq!(read("accel_scale", &[0.5]).1, [0.0, 0.0, 15.0]);
+        assert_eq!(read("accel_bias", &[0.5, 0.25, 1.0]).1, [0.5, 0.25, 11.0]);
+        assert_eq!(read("gyro_scale", &[0.5]).0, [1.5, 3.0, 4.5]);
+        assert_eq!(read("gyro_bias", &[0.5, 0.25, 1.0]).0, [1.5, 2.25, 4.0]);
+        assert_eq!(read("vibration_rectification", &[4.0, 8.0, 12.0]).1, [1.0, 2.0, 13.0]);
     }
 }

@@ -1,0 +1,24 @@
+//! An accelerometer that reads too much or too little: f (1 + scale).
+
+use super::{Card, Channel, Effect, Kind, Parameter, Sensed};
+
+pub struct It;
+
+impl Effect for It {
+    const CARD: Card = Card {
+        id: "accel_scale",
+        name: "accelerometer scale",
+        sentence: "the accelerometer tells more or less than the vehicle feels, by the same share",
+        kind: Kind::Sensor,
+        parameters: &[Parameter { name: "scale", unit: "1", low: -0.1, high: 0.1, typical: [0.005, 0.03] }],
+        channels: &[Channel::Force, Channel::Push],
+        signature: "specific force is off by a share that the change of velocity does not know of",
+        rivals: &["mass_or_density", "accel_bias", "vibration_rectification"],
+        manoeuvre: ("none to full thrust in many attitudes", &["punch", "chop", "ramp-up", "roll-flip"]),
+        shown: None,
+    };
+
+    fn sense(k: &[f64], sensed: &mut Sensed) {
+        sensed.force = sensed.force.map(|f| f * (1.0 + k[0]));
+    }
+}

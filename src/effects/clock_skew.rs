@@ -1,0 +1,20 @@
+//! A clock that runs fast or slow: t becomes (1 + skew) t.
+
+use super::{Card, Channel, Effect, Kind, Parameter};
+
+pub struct It;
+
+impl Effect for It {
+    const CARD: Card = Card {
+        id: "clock_skew",
+        name: "clock skew",
+        sentence: "one recorder's clock drifts away from the other's over the flight",
+        kind: Kind::Sensor,
+        parameters: &[Parameter { name: "skew", unit: "1", low: -0.03, high: 0.03, typical: [0.001, 0.016] }],
+        channels: &[Channel::Rate, Channel::Turn],
+        signature: "the shift between gyro and attitude grows over the log",
+        rivals: &["stream_offset", "gyro_scale", "response_voltage"],
+        manoeuvre: ("the same fast doublets early and late in a long log", &["roll-doublets", "pitch-doublets", "yaw-doublets"]),
+        shown: None,
+    };
+}

@@ -1,0 +1,28 @@
+//! A gyro that is off by a constant: w + b.
+
+use super::{Card, Channel, Effect, Kind, Parameter, Sensed};
+
+pub struct It;
+
+const fn bias(name: &'static str) -> Parameter {
+    Parameter { name, unit: "rad/s", low: -0.06, high: 0.06, typical: [0.005, 0.02] }
+}
+
+impl Effect for It {
+    const CARD: Card = Card {
+        id: "gyro_bias",
+        name: "gyro bias",
+        sentence: "the gyro shows a slow turn that is not there",
+        kind: Kind::Sensor,
+        parameters: &[bias("x"), bias("y"), bias("z")],
+        channels: &[Channel::Rate, Channel::Turn],
+        signature: "the integrated gyro drifts away from the attitude at a constant rate",
+        rivals: &["weak_motor"],
+        manoeuvre: ("calm flight at low and at high throttle", &["ramp-up", "ramp-down", "forward"]),
+        shown: None,
+    };
+
+    fn sense(k: &[f64], sensed: &mut Sensed) {
+        (0..3).for_each(|i| sensed.rates[i] += k[i]);
+    }
+}
