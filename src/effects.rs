@@ -126,6 +126,7 @@ macro_rules! effects {
         effects!(@stage $($model)*; late Late, ask Asked, lag Lag, spin Spin, cell Cell, supply Supply, air Air, flow Flow,);
 
         /// Every sensor's effect on a reading; `k` holds the parameters of all of [`LOG`].
+        #[inline(always)]
         pub fn sense(k: &[f64], sensed: &mut Sensed) {
             $({
                 const AT: usize = offset(&LOG, LogIndex::$log as usize);

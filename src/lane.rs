@@ -5,7 +5,7 @@
 //! one runs is decided once, at run time, by [`dispatch`]. A block type never leaves its `dispatch`, so code for a CPU
 //! that is not there cannot be reached.
 //!
-//! Everything called inside a [`Kernel`] must be `#[inline(always)]`, or wrapped in [`Lane::vectorize`]: a function that
+//! Everything called inside a [`Kernel`] must be `#[inline(always)]`, or wrapped in [`Real::vectorize`]: a function that
 //! is compiled on its own does not know which instructions it may use.
 
 pub mod math;
@@ -131,6 +131,12 @@ pub trait Real:
     /// `(sin(2 pi x), cos(2 pi x))` of `x` in turns; absolute error below 2e-7 in single precision.
     fn sin_cos_turns(self) -> (Self, Self);
 
+    /// Runs `f` compiled for this number's instructions, as a function of its own.
+    #[inline(always)]
+    fn vectorize<T>(f: impl FnOnce() -> T) -> T {
+        f()
+    }
+
     #[inline(always)]
     fn zero() -> Self {
         Self::of(0.0)
@@ -196,9 +202,6 @@ pub trait Lane: Real {
         }
         rows[0]
     }
-    /// Runs `f` compiled for this block's instructions, as a function of its own.
-    fn vectorize<T>(f: impl FnOnce() -> T) -> T;
-
     /// The number in lane `i`.
     #[inline(always)]
     fn get(&self, i: usize) -> Self::Elem {

@@ -9,6 +9,7 @@ use crate::dynamics::extended::{self, Moment};
 use crate::effects::{self, Sensed};
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::period;
+use crate::lane::{Kernel, Lane32, Level, dispatch};
 use std::sync::Arc;
 
 /// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
@@ -78,7 +79,12 @@ impl Predicted {
         self.clone().anew(what, model, record, flight, x)
     }
 
-    fn anew(mut self, what: Anew, model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
+    fn anew(self, what: Anew, model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
+        dispatch(Level::best(), Remake { from: self, what, model, record, flight, x })
+    }
+
+    #[inline(always)]
+    fn remade(mut self, what: Anew, model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
         let p = model.parameters(x);
         let stage = what.stage;
         if stage <= Stage::Response {
@@ -111,6 +117,7 @@ impl Predicted {
     }
 
     /// Modelled voltage, and that with its slow error taken off, which thrust sees.
+    #[inline(always)]
     fn discharge(&mut self, p: &Parameters<f64>, record: &Record, begin_v: f64) {
         let n = record.time.len();
         if record.volts.is_empty() {
@@ -137,6 +144,7 @@ impl Predicted {
     }
 
     /// Specific force. A velocity that lags by `tau` is taken as what it will be.
+    #[inline(always)]
     fn push(&mut self, p: &Parameters<f64>, record: &Record, tau: f64, gravity: f64) {
         let since = record.since();
         let one = |i: usize| {
@@ -159,6 +167,7 @@ impl Predicted {
     }
 
     /// Readings, averaged over bins.
+    #[inline(always)]
     fn sense(&mut self, what: Anew, model: &Model, record: &Record, x: &[f64]) {
         let k = model.sensors(x);
         let acceleration = slopes(&record.time, &self.rates);
@@ -193,6 +202,7 @@ impl Predicted {
 
     /// What the IMU, corrected, integrates to over each window: the turn (rotation vector) and the change of velocity (less gravity), both in the
     /// body frame at the window's beginning.
+    #[inline(always)]
     fn integrate(&mut self, model: &Model, record: &Record, x: &[f64]) {
         if record.windows.is_empty() {
             return;
@@ -244,6 +254,25 @@ impl Predicted {
     }
 }
 
+/// A fused multiply-add is an instruction below a kernel, and a call of a function elsewhere.
+struct Remake<'a> {
+    from: Predicted,
+    what: Anew,
+    model: &'a Model,
+    record: &'a Record,
+    flight: usize,
+    x: &'a [f64],
+}
+
+impl Kernel for Remake<'_> {
+    type Output = Predicted;
+
+    #[inline(always)]
+    fn run<L: Lane32>(self) -> Predicted {
+        self.from.remade(self.what, self.model, self.record, self.flight, self.x)
+    }
+}
+
 /// What was measured, in the layout of [`Predicted::channels`].
 pub fn measured(record: &Record, gravity: f64) -> [Vec<f64>; CHANNELS] {
     let mut out: [Vec<f64>; CHANNELS] = Default::default();
@@ -267,11 +296,13 @@ pub fn measured(record: &Record, gravity: f64) -> [Vec<f64>; CHANNELS] {
     out
 }
 
+#[inline(always)]
 fn in_world(axes: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| (0..3).map(|j| axes[j][k] * v[j]).sum())
 }
 
 /// The rotation vector of a rotation of less than half a turn, rad.
+#[inline(always)]
 fn vector(q: Quaternion<f64>) -> [f64; 3] {
     let sign = if q[0] < 0.0 { -1.0 } else { 1.0 };
     let axis = q[1].hypot(q[2]).hypot(q[3]);
@@ -280,6 +311,7 @@ fn vector(q: Quaternion<f64>) -> [f64; 3] {
 }
 
 /// The truth behind a reading of rates and specific force: what the sensors make of it is small, so that two rounds of correction are enough.
+#[inline(always)]
 fn truth(k: &[f64], measured: [[f64; 3]; 2], acceleration: [f64; 3], throttle: f64) -> [f64; 6] {
     let [mut rates, mut force] = measured;
     for _ in 0..2 {
@@ -292,6 +324,7 @@ fn truth(k: &[f64], measured: [[f64; 3]; 2], acceleration: [f64; 3], throttle: f
 }
 
 /// The measured rates as they were when their late samples say they are.
+#[inline(always)]
 fn shifted(record: &Record, offset: f64) -> Vec<[f64; 3]> {
     let n = record.time.len();
     if offset == 0.0 {
@@ -312,6 +345,7 @@ fn shifted(record: &Record, offset: f64) -> Vec<[f64; 3]> {
 }
 
 /// Accelerations in the world, less gravity's part, behind a first-order lag of `tau` seconds.
+#[inline(always)]
 fn lagged(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
     let mut now = [0.0; 3];
     let mut out = Vec::with_capacity(corrected.len());
@@ -329,6 +363,7 @@ fn lagged(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
 }
 
 /// Change of each rate, by central differences.
+#[inline(always)]
 fn slopes(time: &[f64], rates: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let n = time.len();
     let one = |i: usize| {
@@ -339,6 +374,7 @@ fn slopes(time: &[f64], rates: &[[f64; 3]]) -> Vec<[f64; 3]> {
     (0..n).map(one).collect()
 }
 
+#[inline(always)]
 fn spin(p: &Parameters<f64>, record: &Record, command: &[[f64; 4]]) -> Vec<[f64; 3]> {
     if record.commanded[0] {
         command.iter().map(|c| extended::spin(p, *c)).collect()
@@ -348,6 +384,7 @@ fn spin(p: &Parameters<f64>, record: &Record, command: &[[f64; 4]]) -> Vec<[f64;
 }
 
 /// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next, and what arrives is integrated exactly.
+#[inline(always)]
 fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offset: f64) -> Responses {
     let late = extended::lateness(p);
     let late = [late.rates + offset, late.thrust];

@@ -244,11 +244,9 @@ fn rank(
         let size = found[j].0.start[0].1;
         let (information, kept) = (s.information[0] / (size * size), s.information[0] / s.raw[0].max(1e-300));
         let near = |i: usize| {
-            let pair = score(&grams, &rest, &[n + j, n + i], all.len() - 1, &prior)?;
             // Information on the first that the second leaves, as a share.
             let alone = s.information[0];
             let other = score(&grams, &[&rest[..], &[n + i]].concat(), &[n + j], all.len() - 1, &prior)?;
-            let _ = pair;
             Some((found[i].0.card.id, (1.0 - other.information[0] / alone).clamp(0.0, 1.0).sqrt()))
         };
         let rivals = (0..found.len()).filter(|&i| card.rivals.contains(&found[i].0.card.id));

@@ -273,9 +273,17 @@ fn arriving<R: Real>(line: &[[R; 4]; LINE], k: usize, late: R, end: R, h: R) -> 
     sum / h
 }
 
-/// One step of the extended model under the held command `action`.
-#[inline(always)]
+/// One step of the extended model under the held command `action`: a function of its own, so that it is compiled once for each kind of
+/// number and not again in every kernel that steps.
 pub fn step<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R> {
+    R::vectorize(
+        #[inline(always)]
+        || stepped(s, p, action),
+    )
+}
+
+#[inline(always)]
+fn stepped<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R> {
     let mut s = *s;
     let memory = &mut s.memory;
     let due = R::of(CONTROL_S - 1e-5).le(memory.phase);

@@ -167,10 +167,6 @@ macro_rules! lane {
                 let old = *rows;
                 *rows = from_fn(|i| Portable(from_fn(|j| old[j].0[i])));
             }
-            #[inline(always)]
-            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
-                f()
-            }
         }
     };
 }

@@ -128,10 +128,19 @@ impl Mask for Avx2Mask {
 }
 
 macro_rules! real {
-    ($t:ty, $mask:ty, $of:expr, $fma:expr, $sqrt:expr, $abs:expr, $min:expr, $max:expr, $lt:expr, $le:expr, $select:expr) => {
+    ($t:ty, $mask:ty, $features:literal, $of:expr, $fma:expr, $sqrt:expr, $abs:expr, $min:expr, $max:expr, $lt:expr, $le:expr, $select:expr) => {
         impl Real for $t {
             type Mask = $mask;
             const FUSES: bool = true;
+            #[inline(always)]
+            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
+                #[target_feature(enable = $features)]
+                fn inner<T>(f: impl FnOnce() -> T) -> T {
+                    f()
+                }
+                // SAFETY: see the module's page.
+                unsafe { inner(f) }
+            }
             #[inline(always)]
             fn of(x: f64) -> Self {
                 $of(x as f32)
@@ -195,6 +204,7 @@ macro_rules! real {
 real!(
     Avx512,
     u16,
+    "avx512f,avx512dq,avx2,fma",
     |x| Avx512(unsafe { _mm512_set1_ps(x) }),
     |s: Avx512, a: Avx512, b: Avx512| Avx512(unsafe { _mm512_fmadd_ps(s.0, a.0, b.0) }),
     |s: Avx512| Avx512(unsafe { _mm512_sqrt_ps(s.0) }),
@@ -208,6 +218,7 @@ real!(
 real!(
     Avx2,
     Avx2Mask,
+    "avx2,fma",
     |x| Avx2([unsafe { _mm256_set1_ps(x) }; 2]),
     |s: Avx2, a: Avx2, b: Avx2| Avx2(pair!(_mm256_fmadd_ps, s.0, a.0, b.0)),
     |s: Avx2| Avx2(pair!(_mm256_sqrt_ps, s.0)),
@@ -369,7 +380,7 @@ fn row_sums_avx2(r: [Avx2; LANES]) -> Avx2 {
 }
 
 macro_rules! lane {
-    ($t:ty, $tile:expr, $features:literal, $load:expr, $store:expr, $transpose:expr, $row_sums:expr) => {
+    ($t:ty, $tile:expr, $load:expr, $store:expr, $transpose:expr, $row_sums:expr) => {
         impl Lane for $t {
             type Elem = f32;
             const TILE: Tile = $tile;
@@ -405,15 +416,6 @@ macro_rules! lane {
             fn row_sums(rows: [Self; LANES]) -> Self {
                 $row_sums(rows)
             }
-            #[inline(always)]
-            fn vectorize<T>(f: impl FnOnce() -> T) -> T {
-                #[target_feature(enable = $features)]
-                fn inner<T>(f: impl FnOnce() -> T) -> T {
-                    f()
-                }
-                // SAFETY: see the module's page.
-                unsafe { inner(f) }
-            }
         }
     };
 }
@@ -421,7 +423,6 @@ macro_rules! lane {
 lane!(
     Avx512,
     Tile::Rows6Blocks4,
-    "avx512f,avx512dq,avx2,fma",
     |p| Avx512(unsafe { _mm512_loadu_ps(p) }),
     |s: Avx512, p| unsafe { _mm512_storeu_ps(p, s.0) },
     transpose_avx512,
@@ -430,7 +431,6 @@ lane!(
 lane!(
     Avx2,
     Tile::Rows3Blocks2,
-    "avx2,fma",
     |p: *const f32| Avx2(unsafe { [_mm256_loadu_ps(p), _mm256_loadu_ps(p.add(8))] }),
     |s: Avx2, p: *mut f32| unsafe {
         _mm256_storeu_ps(p, s.0[0]);
