@@ -160,9 +160,13 @@ pub fn respond<R: Real>(
         }
     }
     if oscillates {
+        // A lane without inertia keeps what the others of its block override.
+        let rings = zero.lt(lag.inertia);
         for i in 0..3 {
-            (next[i], next_slope[i]) =
+            let (value, change) =
                 response::second_order(command[i], slope[i], asked.command[i], tau[i], lag.inertia, h);
+            next[i] = R::select(rings, value, next[i]);
+            next_slope[i] = R::select(rings, change, next_slope[i]);
         }
     }
     (next, next_slope)
