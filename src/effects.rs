@@ -131,7 +131,9 @@ macro_rules! effects {
             $({
                 const AT: usize = offset(&LOG, LogIndex::$log as usize);
                 const N: usize = $log::It::CARD.parameters.len();
-                $log::It::sense(&k[AT..AT + N], sensed);
+                if k[AT..AT + N].iter().any(|k| *k != 0.0) {
+                    $log::It::sense(&k[AT..AT + N], sensed);
+                }
             })*
         }
     };

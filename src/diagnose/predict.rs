@@ -64,9 +64,14 @@ impl Anew {
 }
 
 impl Predicted {
-    /// Filtered thrust command at each sample, -1..1.
-    pub fn thrust_command(&self) -> Vec<f64> {
-        self.command.iter().map(|c| c[3]).collect()
+    /// Filtered thrust command at a sample, -1..1.
+    pub fn thrust(&self, i: usize) -> f64 {
+        self.command[i][3]
+    }
+
+    /// Sum over the axes of |command - response| at a sample.
+    pub fn lag(&self, i: usize) -> f64 {
+        self.lag[i]
     }
 
     /// Predicts `record`, number `flight`, at `x`.
@@ -147,23 +152,26 @@ impl Predicted {
     #[inline(always)]
     fn push(&mut self, p: &Parameters<f64>, record: &Record, tau: f64, gravity: f64) {
         let since = record.since();
-        let one = |i: usize| {
+        let mut out = Vec::with_capacity(record.time.len());
+        for i in 0..record.time.len() {
+            let mut velocity = [0.0; 3];
+            for k in 0..3 {
+                let gains = record.imu[3 + k][i] - gravity * record.axes[i][k][2];
+                velocity[k] = record.velocity[k][i] + if tau > 0.0 { tau * gains } else { 0.0 };
+            }
             let moment = Moment {
                 command: self.command[i][3],
                 voltage: self.voltage[i],
                 axes: record.axes[i],
-                velocity: std::array::from_fn(|k| {
-                    let gains = record.imu[3 + k][i] - gravity * record.axes[i][k][2];
-                    record.velocity[k][i] + if tau > 0.0 { tau * gains } else { 0.0 }
-                }),
+                velocity,
                 rates: self.rates[i],
                 height: record.height[i],
                 rate_error: self.lag[i],
                 elapsed: record.time[i] - since,
             };
-            extended::force(p, &moment)
-        };
-        self.force = (0..record.time.len()).map(one).collect::<Vec<_>>().into();
+            out.push(extended::force(p, &moment));
+        }
+        self.force = out.into();
     }
 
     /// Readings, averaged over bins.
@@ -171,16 +179,6 @@ impl Predicted {
     fn sense(&mut self, what: Anew, model: &Model, record: &Record, x: &[f64]) {
         let k = model.sensors(x);
         let acceleration = slopes(&record.time, &self.rates);
-        let reading = |i: usize| -> [f64; 6] {
-            let throttle = extended::throttle(self.command[i][3]);
-            let mut sensed =
-                Sensed { rates: self.rates[i], acceleration: acceleration[i], force: self.force[i], throttle };
-            effects::sense(k, &mut sensed);
-            // The gyro's own lateness, on top of what the sensor makes of it.
-            let [a, b, c]: [f64; 3] =
-                std::array::from_fn(|j| sensed.rates[j] - self.rates[i][j] + self.seen_rates[i][j]);
-            [a, b, c, sensed.force[0], sensed.force[1], sensed.force[2]]
-        };
         let known =
             |c: usize| if c < 3 { record.commanded[0] } else { record.commanded[1] && (record.moves || c == 5) };
         let wanted = |c: usize| known(c) && if c < 3 { what.rates } else { what.forces };
@@ -188,8 +186,15 @@ impl Predicted {
         for &[from, to] in &record.bins {
             let mut sum = [0.0; 6];
             for i in from..to {
-                let reading = reading(i);
-                (0..6).for_each(|c| sum[c] += reading[c]);
+                let throttle = extended::throttle(self.command[i][3]);
+                let (rates, force) = (self.rates[i], self.force[i]);
+                let mut sensed = Sensed { rates, acceleration: acceleration[i], force, throttle };
+                effects::sense(k, &mut sensed);
+                for j in 0..3 {
+                    // The gyro's own lateness, on top of what the sensor makes of it.
+                    sum[j] += sensed.rates[j] - rates[j] + self.seen_rates[i][j];
+                    sum[3 + j] += sensed.force[j];
+                }
             }
             (0..6).filter(|&c| wanted(c)).for_each(|c| means[c].push(sum[c] / (to - from) as f64));
         }
@@ -213,13 +218,13 @@ impl Predicted {
         let tau = model.of(x, "velocity_lag", "tau");
         let gyro = shifted(record, offset);
         let slope = slopes(&record.time, &gyro);
-        let corrected: Vec<[f64; 6]> = (0..gyro.len())
-            .map(|i| {
-                let throttle = extended::throttle(self.command[i][3]);
-                let throttle = if throttle.is_finite() { throttle } else { 0.0 };
-                truth(k, [gyro[i], std::array::from_fn(|j| record.imu[3 + j][i])], slope[i], throttle)
-            })
-            .collect();
+        let mut corrected: Vec<[f64; 6]> = Vec::with_capacity(gyro.len());
+        for i in 0..gyro.len() {
+            let throttle = extended::throttle(self.command[i][3]);
+            let throttle = if throttle.is_finite() { throttle } else { 0.0 };
+            let force = [record.imu[3][i], record.imu[4][i], record.imu[5][i]];
+            corrected.push(truth(k, [gyro[i], force], slope[i], throttle));
+        }
         let lagged = if tau > 0.0 { Some(lagged(record, &corrected, tau)) } else { None };
         let mut out: [Vec<f64>; 6] = Default::default();
         for &[from, to] in &record.windows {

@@ -1,0 +1,157 @@
+//! What a diagnosis says.
+
+use super::horizon::Horizon;
+use super::structure::Structure;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The whole answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// No effect beyond noise.
+    Clean,
+    /// Effects, and nothing that they leave.
+    Effects,
+    /// Structure remains that no effect explains.
+    Unexplained,
+}
+
+/// How sure a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    Named,
+    /// One of several, which these flights do not tell apart.
+    NamedSet,
+    /// Too few stretches of flight agree, or it does not explain enough.
+    Suspected,
+}
+
+/// A number with its 95 % interval.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Value {
+    pub value: f64,
+    pub low: f64,
+    pub high: f64,
+    pub unit: String,
+}
+
+/// Before and after, in `unit`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Gain {
+    pub before: f64,
+    pub after: f64,
+    /// Shares of the variance that the model explains.
+    pub r2_before: f64,
+    pub r2_after: f64,
+    pub unit: &'static str,
+}
+
+/// An effect that the flights show.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// Identifier.
+    pub effect: &'static str,
+    pub name: &'static str,
+    pub status: Status,
+    /// All that it may be, itself first; only itself where it is named.
+    pub members: Vec<&'static str>,
+    pub sentence: &'static str,
+    /// The channel that it explains most of.
+    pub channel: &'static str,
+    pub parameters: BTreeMap<String, Value>,
+    /// Stretches of flight that agree.
+    pub stretches: f64,
+    /// Share of each channel's residual power that goes with it.
+    pub explained: BTreeMap<&'static str, f64>,
+    /// On flight that was not used for fitting.
+    pub gain: BTreeMap<&'static str, Gain>,
+    /// How far apart the simulations with and without it are after one second, m/s; for sensors, what the error integrates to.
+    pub impact: f64,
+    pub rivals: Vec<&'static str>,
+    /// What to fly to be surer.
+    pub manoeuvre: &'static str,
+    pub kinds: Vec<&'static str>,
+    /// Why it is no more than suspected.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+}
+
+/// A number of the compact model that differs from the base vehicle's.
+#[derive(Clone, Debug, Serialize)]
+pub struct Drift {
+    pub parameter: String,
+    pub base: f64,
+    pub value: f64,
+    pub low: f64,
+    pub high: f64,
+    pub unit: &'static str,
+}
+
+/// An effect that these flights could not show, or not at a size that matters.
+#[derive(Clone, Debug, Serialize)]
+pub struct Hidden {
+    pub effect: &'static str,
+    pub why: String,
+    /// The smallest size that they would show, and its unit.
+    pub smallest: Option<f64>,
+    pub unit: &'static str,
+}
+
+/// What the flights could show of an effect.
+#[derive(Clone, Debug, Serialize)]
+pub struct Detectable {
+    pub effect: &'static str,
+    /// The smallest size that they show, and that they tell from the nearest rival.
+    pub smallest: f64,
+    pub told_apart: f64,
+    pub nearest: Option<&'static str>,
+    pub unit: &'static str,
+    pub typical: [f64; 2],
+    pub manoeuvre: &'static str,
+}
+
+/// Open-loop errors before and after.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Ahead {
+    pub before: Horizon,
+    pub after: Horizon,
+}
+
+/// A channel before and after.
+#[derive(Clone, Debug, Serialize)]
+pub struct Residual {
+    pub before: f64,
+    pub after: f64,
+    /// Standard deviation of what is unpredictable in it.
+    pub noise: f64,
+    pub unit: &'static str,
+    pub r2_before: f64,
+    pub r2_after: f64,
+}
+
+/// Everything that a diagnosis found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Diagnosis {
+    pub verdict: Verdict,
+    pub logs: Vec<String>,
+    pub base: String,
+    pub usable_s: f64,
+    /// By impact.
+    pub findings: Vec<Finding>,
+    pub unexplained: Vec<Structure>,
+    pub not_detectable: Vec<Hidden>,
+    pub detectable: Vec<Detectable>,
+    pub drift: Vec<Drift>,
+    /// One step ahead, on the flight that was fitted.
+    pub residuals: BTreeMap<&'static str, Residual>,
+    /// On flight that was not used for fitting.
+    pub held_out: BTreeMap<&'static str, Gain>,
+    pub horizons: Vec<Ahead>,
+    /// Share of what could be gained at most that was gained, on flight that was not used for fitting.
+    pub captured: Option<f64>,
+    /// Structure before and after, by channel.
+    pub structure_before: Vec<Structure>,
+    pub structure: Vec<Structure>,
+}

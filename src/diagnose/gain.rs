@@ -1,0 +1,97 @@
+//! What the effects are worth on flight that was not used for fitting: the last flight where there are several, else the last 30 % of the time.
+
+use super::finding::{Ahead, Gain};
+use super::fit::{self, Point};
+use super::horizon;
+use super::predict::CHANNELS;
+use super::problem::Problem;
+use super::select::Selection;
+use super::structure::NAMES;
+use super::whiten::Whitener;
+use crate::identify::data::TRAIN_SHARE;
+use crate::stats::mean;
+use std::collections::BTreeMap;
+
+/// Base and extended model, fitted on one part of the flight and judged on the other.
+pub struct HeldOut {
+    pub channels: BTreeMap<&'static str, Gain>,
+    pub horizons: Vec<Ahead>,
+    /// Share of the achievable fall of the whitened squares.
+    pub captured: Option<f64>,
+}
+
+/// Whether each stretch of time is held out.
+fn held_out(problem: &Problem) -> Vec<bool> {
+    let mut out = vec![false; problem.blocks];
+    let last = problem.records.len() - 1;
+    let blocks: Vec<u32> = problem.records[last].block.clone();
+    let (Some(&first), Some(&end)) = (blocks.first(), blocks.last()) else { return out };
+    let from = if last > 0 { first } else { first + ((end - first) as f64 * TRAIN_SHARE) as u32 };
+    (from..=end).for_each(|b| out[b as usize] = true);
+    out
+}
+
+/// Fits on the one part, predicts the other.
+pub fn measure(problem: &Problem, selection: &Selection) -> HeldOut {
+    let out = held_out(problem);
+    let train = selection.whitener.without(&problem.rows, &out);
+    let test = selection.whitener.without(&problem.rows, &out.iter().map(|o| !o).collect::<Vec<_>>());
+    let base = fit::fit(problem, &train, &selection.base.x, &selection.base.free);
+    let extended = if selection.added.is_empty() {
+        base.clone()
+    } else {
+        fit::fit(problem, &train, &selection.point.x, &selection.point.free)
+    };
+    let squares = |p: &Point| fit::costs(problem, &test.apply(&p.residual, &problem.rows)).iter().sum::<f64>();
+    let floor = test.expected();
+    let (before, after) = (squares(&base), squares(&extended));
+    let captured = (!selection.added.is_empty() && before > 1.05 * floor).then(|| (before - after) / (before - floor).max(1e-9));
+    HeldOut {
+        channels: channels(problem, &base, &extended, &out),
+        horizons: horizons(problem, &base, &extended, &out),
+        captured: captured.map(|c| c.min(1.0)),
+    }
+}
+
+fn channels(problem: &Problem, base: &Point, extended: &Point, out: &[bool]) -> BTreeMap<&'static str, Gain> {
+    let mut all = BTreeMap::new();
+    for c in 0..CHANNELS {
+        let rows: Vec<usize> = (0..problem.rows[c].len()).filter(|&i| out[problem.rows[c][i].block as usize]).collect();
+        if rows.len() < 20 || base.residual[c].is_empty() {
+            continue;
+        }
+        let rms = |p: &Point| mean(&rows.iter().map(|&i| p.residual[c][i].powi(2)).collect::<Vec<_>>()).sqrt();
+        let measured: Vec<f64> = rows.iter().map(|&i| problem.measured[c][i]).collect();
+        let middle = mean(&measured);
+        let variance = mean(&measured.iter().map(|m| (m - middle).powi(2)).collect::<Vec<_>>());
+        let (before, after) = (rms(base), rms(extended));
+        let r2 = |e: f64| 1.0 - e * e / variance.max(1e-300);
+        let (name, unit) = NAMES[c];
+        all.insert(name, Gain { before, after, r2_before: r2(before), r2_after: r2(after), unit });
+    }
+    all
+}
+
+fn horizons(problem: &Problem, base: &Point, extended: &Point, out: &[bool]) -> Vec<Ahead> {
+    let f = problem.records.len() - 1;
+    let record = &problem.records[f];
+    let wanted = |i: usize| out[record.block[i] as usize];
+    let at = |p: &Point| horizon::errors(&problem.model, record, &p.state[f], &p.x, &wanted);
+    let pairs = at(base).into_iter().zip(at(extended));
+    pairs.filter(|(b, _)| b.starts > 0).map(|(before, after)| Ahead { before, after }).collect()
+}
+
+impl Whitener {
+    /// The same, deaf to the stretches of time that are `out`.
+    pub fn without(&self, rows: &[Vec<super::problem::Row>; CHANNELS], out: &[bool]) -> Self {
+        let mut copy = self.clone();
+        for (c, weights) in copy.weights_mut().iter_mut().enumerate() {
+            for (row, weight) in rows[c].iter().zip(weights.iter_mut()) {
+                if out[row.block as usize] {
+                    *weight = 0.0;
+                }
+            }
+        }
+        copy
+    }
+}

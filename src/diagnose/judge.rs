@@ -1,0 +1,234 @@
+//! From the fit to findings: evidence, replication, size and what is left.
+
+use super::finding::{Finding, Status, Value};
+use super::fit::{Point, covariance};
+use super::gram::{Grams, inverse, score};
+use super::horizon;
+use super::model::{TAU, span};
+use super::predict::CHANNELS;
+use super::problem::{Problem, Values};
+use super::select::{Added, Selection};
+use super::structure::NAMES;
+use crate::effects::{Card, Kind};
+use crate::stats::mean;
+use nalgebra::DMatrix;
+use std::collections::BTreeMap;
+
+/// Stretches of flight that have to agree before an effect is named.
+pub const REPLICATED: f64 = 15.0;
+/// 97.5 % quantile of the normal distribution.
+const Z: f64 = 1.96;
+/// Gravity, for turning angles into velocities, m/s2.
+const G: f64 = 9.81;
+
+/// Everything linear about the end of a selection.
+pub struct Judge<'a> {
+    pub problem: &'a Problem,
+    pub selection: &'a Selection,
+    pub covariance: DMatrix<f64>,
+    grams: Grams,
+}
+
+/// A judged effect, and the numbers of the model without it.
+pub struct Judged {
+    pub finding: Finding,
+    pub material: bool,
+}
+
+impl<'a> Judge<'a> {
+    pub fn new(problem: &'a Problem, selection: &'a Selection) -> Self {
+        let point = &selection.point;
+        let residual = selection.whitener.apply(&point.residual, &problem.rows);
+        let columns: Vec<&Values> = point.white.iter().chain([&residual]).collect();
+        let grams = Grams::new(&columns, &problem.rows, problem.blocks);
+        let n = point.free.len();
+        let covariance = covariance(problem, &selection.whitener, point).unwrap_or(DMatrix::zeros(n, n));
+        Self { problem, selection, covariance, grams }
+    }
+
+    fn point(&self) -> &Point {
+        &self.selection.point
+    }
+
+    /// Places of an effect's numbers among the fitted ones.
+    pub fn places(&self, card: &Card) -> Vec<usize> {
+        span(card).filter_map(|k| self.point().free.iter().position(|f| *f == k)).collect()
+    }
+
+    /// Stretches that agree on the effect: the robust score of leaving it out.
+    fn stretches(&self, card: &Card) -> f64 {
+        let own = self.places(card);
+        let n = self.point().free.len();
+        let rest: Vec<usize> = (0..n).filter(|i| !own.contains(i)).collect();
+        // The residual as it was without the effect.
+        let mut grams = self.grams.clone();
+        let sizes: Vec<(usize, f64)> = own.iter().map(|&i| (i, self.point().x[self.point().free[i]])).collect();
+        for gram in grams.blocks.iter_mut().chain([&mut grams.sum]) {
+            for &(i, size) in &sizes {
+                for j in 0..=n {
+                    let along = gram[(i, j)] * size;
+                    gram[(n, j)] += along;
+                }
+                for j in 0..=n {
+                    let along = gram[(j, i)] * size;
+                    gram[(j, n)] += along;
+                }
+            }
+        }
+        let prior = vec![0.0; n + 1];
+        score(&grams, &rest, &own, n, &prior).map_or(0.0, |s| s.evidence / own.len() as f64)
+    }
+
+    /// Change of the prediction that the effect makes, by channel, beside what the other numbers could take over, in physical units; and
+    /// the numbers without it.
+    fn without(&self, card: &Card) -> (Vec<f64>, Values) {
+        let own = self.places(card);
+        let n = self.point().free.len();
+        let rest: Vec<usize> = (0..n).filter(|i| !own.contains(i)).collect();
+        let mut x = self.point().x.clone();
+        let prior: Vec<f64> =
+            rest.iter().map(|&i| self.problem.model.numbers[self.point().free[i]].trust.powi(-2)).collect();
+        if let Some(inner) = inverse(&Grams::pick(&self.grams.sum, &rest, &rest), &prior) {
+            let absorbed = inner * Grams::pick(&self.grams.sum, &rest, &own);
+            for (a, &i) in rest.iter().enumerate() {
+                let k = self.point().free[i];
+                let number = &self.problem.model.numbers[k];
+                let taken: f64 = own.iter().enumerate().map(|(b, &j)| absorbed[(a, b)] * self.point().x[self.point().free[j]]).sum();
+                x[k] = (x[k] + taken).clamp(number.low, number.high);
+            }
+        }
+        span(card).for_each(|k| x[k] = 0.0);
+        let state = self.problem.predict(&x);
+        let (with, without) = (self.problem.pick(&self.point().state), self.problem.pick(&state));
+        let change = std::array::from_fn(|c| with[c].iter().zip(&without[c]).map(|(a, b)| a - b).collect());
+        (x, change)
+    }
+
+    /// Judges one added effect.
+    pub fn judge(&self, added: &Added) -> Judged {
+        let card = added.card;
+        let (x, change) = self.without(card);
+        let residual = &self.point().residual;
+        let power = |v: &[f64]| mean(&v.iter().map(|x| x * x).collect::<Vec<_>>());
+        let mut explained = BTreeMap::new();
+        let mut most = (0.0, "");
+        for c in 0..CHANNELS {
+            if residual[c].is_empty() || change[c].is_empty() {
+                continue;
+            }
+            let before: Vec<f64> = residual[c].iter().zip(&change[c]).map(|(r, d)| r + d).collect();
+            let share = 1.0 - power(&residual[c]) / power(&before).max(1e-300);
+            if share > 1e-3 {
+                explained.insert(NAMES[c].0, share);
+            }
+            if share > most.0 {
+                most = (share, NAMES[c].0);
+            }
+        }
+        let parameters = self.parameters(card);
+        let stretches = self.stretches(card);
+        let material = is_material(card, &self.point().x);
+        let status = if stretches < REPLICATED {
+            Status::Suspected
+        } else if added.ties.is_empty() {
+            Status::Named
+        } else {
+            Status::NamedSet
+        };
+        let why = (stretches < REPLICATED).then(|| format!("only {stretches:.0} stretches of flight agree"));
+        let (manoeuvre, kinds) = card.manoeuvre;
+        let finding = Finding {
+            effect: card.id,
+            name: card.name,
+            status,
+            members: std::iter::once(card.id).chain(added.ties.iter().map(|c| c.id)).collect(),
+            sentence: card.sentence,
+            channel: most.1,
+            parameters,
+            stretches,
+            explained,
+            gain: BTreeMap::new(),
+            impact: self.impact(card, &x, &change),
+            rivals: card.rivals.to_vec(),
+            manoeuvre,
+            kinds: kinds.to_vec(),
+            why,
+        };
+        Judged { finding, material }
+    }
+
+    /// The effect's parameters as people read them, with intervals.
+    fn parameters(&self, card: &Card) -> BTreeMap<String, Value> {
+        let at = span(card);
+        let x = &self.point().x;
+        let places: Vec<usize> = self.places(card);
+        let tau_places: Vec<usize> = [TAU.start, TAU.end - 1]
+            .iter()
+            .filter_map(|k| self.point().free.iter().position(|f| f == k))
+            .collect();
+        let values: Vec<f64> = at.clone().map(|k| x[k]).collect();
+        let shown = |k: &[f64], tau: [f64; 2]| -> Vec<(String, f64, String)> {
+            match card.shown {
+                Some(shown) => shown(k, tau).into_iter().map(|(n, v, u)| (n.to_string(), v, u.to_string())).collect(),
+                None => card.parameters.iter().zip(k).map(|(p, v)| (p.name.to_string(), *v, p.unit.to_string())).collect(),
+            }
+        };
+        let tau = [x[TAU.start], x[TAU.end - 1]];
+        let here = shown(&values, tau);
+        // By how much each shown value changes with the fitted ones (delta method).
+        let mut out = BTreeMap::new();
+        for (i, (name, value, unit)) in here.iter().enumerate() {
+            let mut slopes: Vec<(usize, f64)> = Vec::new();
+            for (j, &place) in places.iter().enumerate() {
+                let step = 1e-4 * card.parameters[j].typical[0];
+                let mut moved = values.clone();
+                moved[j] += step;
+                slopes.push((place, (shown(&moved, tau)[i].1 - value) / step));
+            }
+            for (j, &place) in tau_places.iter().enumerate() {
+                let mut moved = tau;
+                moved[j] += 1e-6;
+                slopes.push((place, (shown(&values, moved)[i].1 - value) / 1e-6));
+            }
+            let variance: f64 = slopes
+                .iter()
+                .flat_map(|a| slopes.iter().map(move |b| (a, b)))
+                .map(|(a, b)| a.1 * b.1 * self.covariance[(a.0, b.0)])
+                .sum();
+            let half = Z * variance.max(0.0).sqrt();
+            out.insert(name.clone(), Value { value: *value, low: value - half, high: value + half, unit: unit.clone() });
+        }
+        out
+    }
+
+    /// How far apart simulations with and without the effect are after a second, m/s; for sensors, what the error integrates to.
+    fn impact(&self, card: &Card, without: &[f64], change: &Values) -> f64 {
+        let rms = |c: usize| mean(&change[c].iter().map(|x| x * x).collect::<Vec<_>>()).sqrt();
+        let sensors: f64 = (0..3)
+            .map(|k| rms(k) * 0.5 * G)
+            .chain((3..6).map(rms))
+            .chain((6..9).map(|c| rms(c) * 4.0 * 0.5 * G))
+            .chain((9..12).map(|c| rms(c) * 4.0))
+            .fold(0.0, f64::max);
+        if matches!(card.kind, Kind::Sensor | Kind::Random) {
+            return sensors;
+        }
+        let model = &self.problem.model;
+        let state = self.problem.predict(without);
+        let with = &self.point().state;
+        let distances = self.problem.records.iter().enumerate().map(|(f, record)| {
+            horizon::apart(model, record, (&with[f], &self.point().x), (&state[f], without))
+        });
+        let apart = distances.fold(0.0, f64::max);
+        if apart > 0.0 { apart } else { sensors }
+    }
+}
+
+/// Whether the size of an effect is one that anybody would notice: half the smallest of its typical ones.
+pub fn is_material(card: &Card, x: &[f64]) -> bool {
+    let at = span(card);
+    let share = |(p, k): (&crate::effects::Parameter, usize)| (x[k] / p.typical[0]).powi(2);
+    // A shape is no size.
+    let sizes = card.parameters.iter().zip(at).filter(|(p, _)| !(p.name == "tau" && card.parameters.len() > 1));
+    sizes.map(share).sum::<f64>().sqrt() >= 0.5
+}
