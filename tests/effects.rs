@@ -46,7 +46,7 @@ fn start() -> State<f64> {
 /// Steps and curves on every axis, full throttle with yaw, and cuts.
 fn command(k: usize) -> [f64; 4] {
     let t = k as f64 * DT;
-    let sign = if k / 12 % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if (k / 12).is_multiple_of(2) { 1.0 } else { -1.0 };
     let thrust = [0.0, 1.0, -0.6, 0.9][k / 10 % 4];
     [0.4 * sign + 0.2 * (31.0 * t).sin(), 0.5 * (17.0 * t).cos(), 0.8 * sign, thrust]
 }
