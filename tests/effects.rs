@@ -46,7 +46,7 @@ fn start() -> State<f64> {
 /// Steps and curves on every axis, full throttle with yaw, and cuts.
 fn command(k: usize) -> [f64; 4] {
     let t = k as f64 * DT;
-    let sign = if k / 12 % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if (k / 12).is_multiple_of(2) { 1.0 } else { -1.0 };
     let thrust = [0.0, 1.0, -0.6, 0.9][k / 10 % 4];
     [0.4 * sign + 0.2 * (31.0 * t).sin(), 0.5 * (17.0 * t).cos(), 0.8 * sign, thrust]
 }
@@ -105,8 +105,8 @@ fn apart(a: &State<f64>, b: &State<f64>) -> (f64, f64) {
     (largest(&a.position, &b.position, false), largest(&a.velocity, &b.velocity, false))
 }
 
-/// The extended model tends to the compact one as each effect tends to nothing: on a smooth flight to its steps of 10 ms, on one
-/// of jumps to steps as short as its own.
+/// The extended model tends to the compact one as each effect tends to nothing: nearly to its steps of 2 ms, which are as long as its
+/// own, and to those of 10 ms as far as these may be off themselves (5 mm and 1 cm/s, as in the test of the compact model).
 #[test]
 fn a_negligible_effect_is_none() {
     const STEPS: usize = 100;
@@ -127,10 +127,11 @@ fn a_negligible_effect_is_none() {
         assert!(p.beyond.values.any());
         let mut s = start();
         (0..STEPS).for_each(|k| s = step(&s, &p, smooth(k)));
-        for (flight, (far, fast)) in [("smooth", apart(&s, &long)), ("jumps", apart(&fly(&p, start(), STEPS), &short))]
+        for (steps, most, (far, fast)) in
+            [("short", 2e-3, apart(&fly(&p, start(), STEPS), &short)), ("long", 5e-3, apart(&s, &long))]
         {
-            println!("{}, {flight}: {:.2} mm, {:.2} mm/s", card.id, 1e3 * far, 1e3 * fast);
-            assert!(far < 2e-3 && fast < 1e-2, "{}, {flight}: {far} m, {fast} m/s", card.id);
+            println!("{}, {steps} steps: {:.2} mm, {:.2} mm/s", card.id, 1e3 * far, 1e3 * fast);
+            assert!(far < most && fast < 1e-2, "{}, {steps} steps: {far} m, {fast} m/s", card.id);
         }
     }
 }

@@ -25,8 +25,8 @@ impl Effect for It {
 
     #[inline(always)]
     fn spin<R: Real>(k: &[R], spin: &mut Spin<R>) {
-        for i in 0..3 {
-            spin.rates[i] = k[i].mul_add(spin.throttle, spin.rates[i]);
+        for (rate, b) in spin.rates.iter_mut().zip(k) {
+            *rate = b.mul_add(spin.throttle, *rate);
         }
     }
 }
