@@ -420,6 +420,37 @@ fn everything_that_can_be_hidden_flies_and_shows() {
     }
 }
 
+/// `cargo test --test truth_hidden -- --ignored --nocapture largest`
+#[test]
+#[ignore = "a minute; prints a table"]
+fn the_largest_sizes_fly_too() {
+    let mut random = rng();
+    for (k, entry) in catalogue::CATALOGUE.iter().enumerate() {
+        let vehicle = Vehicle::draw(100 + k as u64);
+        let extreme = if matches!(entry.id, "rate_second_order" | "rate_slew_limit") { 0 } else { 1 };
+        let hidden = [Hidden::sized(entry.id, entry.range(&vehicle)[extreme], &vehicle, &mut random)];
+        for style in [Style::Excited, Style::Race] {
+            let log = fly(&vehicle, &hidden, &Setting { seed: k as u64, ..setting(120.0, 1.0, style) });
+            let most = |f: &dyn Fn(&[f64; 10]) -> f64| log.odometry.rows.iter().map(f).fold(0.0, f64::max);
+            let (reach, height) = (most(&|row| row[0].hypot(row[1])), most(&|row| row[2]));
+            let speed = most(&|row| Vector3::new(row[7], row[8], row[9]).norm());
+            let low = log
+                .odometry
+                .rows
+                .iter()
+                .zip(&log.odometry.time_s)
+                .filter(|(row, t)| row[2] < 0.06 && **t > 6.0 && **t < 103.0);
+            let low = low.count() as f64 / log.odometry.len() as f64;
+            println!(
+                "{:<26}{style:?}: {reach:.0} m away, {height:.0} m high, {speed:.0} m/s, on the ground {:.1} %",
+                entry.id,
+                100.0 * low
+            );
+            assert!(reach < 250.0 && height < 130.0);
+        }
+    }
+}
+
 #[test]
 fn nothing_of_size_zero_shows() {
     let vehicle = Vehicle::draw(5);
@@ -443,6 +474,17 @@ fn races_are_flown_without_excitation() {
         let speeds = log.odometry.rows.iter().map(|row| Vector3::new(row[7], row[8], row[9]).norm());
         let mean = speeds.sum::<f64>() / log.odometry.len() as f64;
         assert!(mean > 3.5, "race {seed}: {mean} m/s on average");
+    }
+}
+
+/// What is hidden is the only thing wrong: without it, the check of a log has nothing to say.
+#[test]
+fn a_clean_flight_is_clean() {
+    for (imu_hz, style) in [(100.0, Style::Excited), (1000.0, Style::Excited), (333.0, Style::Race)] {
+        let log = fly(&Vehicle::draw(6), &[], &Setting { imu_hz, ..setting(60.0, 1.0, style) });
+        let quality = racer::flight::quality::check(&log);
+        let worst = quality.findings.iter().map(|finding| finding.severity).max();
+        assert!(worst <= Some(racer::flight::quality::Severity::Note), "{imu_hz} Hz: {:?}", quality.findings);
     }
 }
 

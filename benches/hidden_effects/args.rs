@@ -50,6 +50,9 @@ pub struct Args {
     /// Hide this one in every log: an identifier, a kind of another tier, `none` or `drift`
     #[arg(long, value_name = "ID")]
     pub only: Option<String>,
+    /// With `--only` an identifier: its size, in the catalogue's unit, of either sign
+    #[arg(long, requires = "only", allow_negative_numbers = true)]
+    pub size: Option<f64>,
     /// Logs at a time
     #[arg(long, default_value_t = 1)]
     pub jobs: usize,
@@ -68,6 +71,7 @@ impl Args {
     /// What this run is, so that it can be made again.
     pub fn summary(&self) -> String {
         let only = self.only.as_ref().map_or(String::new(), |only| format!(" --only {only}"));
+        let only = self.size.map_or(only.clone(), |size| format!("{only} --size {size}"));
         let [tier, style] = [format!("{:?}", self.tier), format!("{:?}", self.style)].map(|name| name.to_lowercase());
         let (n, seed, seconds) = (self.n, self.seed, self.seconds);
         format!("--n {n} --seed {seed} --tier {tier} --style {style} --seconds {seconds}{only}")

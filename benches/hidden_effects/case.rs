@@ -67,7 +67,7 @@ impl Case {
             None => any_group(args.tier, &mut rng),
         };
         let hidden = match &args.only {
-            Some(only) => named(only, &base, args.seconds, &mut rng),
+            Some(only) => named(only, &base, args, &mut rng),
             None => drawn(group, &base, args.seconds, &mut rng),
         };
         let flown = if group == Group::Drift { drifted(&base, &mut rng) } else { base.clone() };
@@ -118,11 +118,14 @@ fn group_of(only: &str) -> Group {
     }
 }
 
-fn named(only: &str, vehicle: &Vehicle, seconds: f64, rng: &mut StdRng) -> Vec<Hidden> {
+fn named(only: &str, vehicle: &Vehicle, args: &Args, rng: &mut StdRng) -> Vec<Hidden> {
     match group_of(only) {
         Group::Unmatched => vec![unmatched::draw(only, vehicle, rng)],
-        Group::Outside => vec![outside::draw(only, seconds, rng)],
-        Group::One => vec![Hidden::draw(only, vehicle, rng)],
+        Group::Outside => vec![outside::draw(only, args.seconds, rng)],
+        Group::One => vec![match args.size {
+            Some(size) => Hidden::sized(only, size, vehicle, rng),
+            None => Hidden::draw(only, vehicle, rng),
+        }],
         _ => Vec::new(),
     }
 }

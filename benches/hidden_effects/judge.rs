@@ -40,8 +40,13 @@ impl Judged {
         self.answer.as_ref().ok()
     }
 
+    /// Names that count: not those of the untouched log, and drift only where that is what is wanted, as for a wrong mass.
     fn fresh<'a>(&'a self, answer: &'a Answer) -> impl Iterator<Item = &'a Finding> {
-        answer.named().filter(|finding| !self.before.contains(&finding.effect))
+        answer.findings.iter().filter(|finding| match finding.status {
+            Status::Named | Status::NamedSet => !self.before.contains(&finding.effect),
+            Status::Drift => self.hidden.iter().any(|truth| truth.is(&finding.effect)),
+            Status::Suspected => false,
+        })
     }
 
     /// The first name it gave.
@@ -75,6 +80,9 @@ impl Judged {
     pub fn nameable(&self) -> bool {
         let Some(answer) = self.ok() else { return true };
         let hopeless = |id: &str| answer.not_detectable.iter().any(|effect| effect == id);
+        if self.group == Group::Outside {
+            return true;
+        }
         self.wanted().iter().any(|truth| truth.right.iter().any(|id| !hopeless(id)))
     }
 

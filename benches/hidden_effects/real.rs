@@ -62,7 +62,8 @@ fn one(args: &Args, file: &str, log: &Log, effects: &[(&str, f64)]) -> Vec<Judge
         Err(error) => println!("{file}, untouched: FAILED: {error}"),
     }
     let mut rng = StdRng::seed_from_u64(args.seed);
-    let put = effects.iter().map(|(id, size)| {
+    // What an untouched log is said to have cannot be told from what is put in.
+    let put = effects.iter().filter(|(id, _)| !before.iter().any(|name| name == id)).map(|(id, size)| {
         let hidden = Hidden::sized(id, *size, &Vehicle::seed_class(), &mut rng);
         let (answer, seconds) = run::diagnose(args, &folder.path, &with(log, &hidden), &base);
         let judged = Judged { group: Group::Real, hidden: vec![hidden], before: before.clone(), answer, seconds };

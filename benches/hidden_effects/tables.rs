@@ -65,7 +65,7 @@ fn confusion(all: &[Judged]) {
             Some(first) if judged.first_set_holds() => format!("set of {} with it", first.effect),
             Some(first) => first.effect.clone(),
             None if judged.unexplained() => "(unexplained)".into(),
-            None if judged.wanted().is_empty() => "(nothing)".into(),
+            None if judged.wanted().is_empty() || judged.group == Group::Outside => "(nothing)".into(),
             None if judged.nameable() => "(missed)".into(),
             None => "(not detectable)".into(),
         };

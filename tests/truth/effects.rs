@@ -89,10 +89,12 @@ impl Hidden {
     }
 }
 
-/// Ten effects of at most 0.4 times the catalogue's smallest size, and after them a dominant one.
+/// Ten effects of at most 0.4 times the catalogue's smallest size, and after them a dominant one: something that moves the vehicle,
+/// of the stronger half of its sizes.
 pub fn clutter(vehicle: &Vehicle, rng: &mut StdRng) -> Vec<Hidden> {
-    let dominant = catalogue::any(rng);
-    let small: Vec<_> = CATALOGUE.iter().filter(|e| e.shrinks() && e.id != dominant).collect();
+    let moving: Vec<_> = CATALOGUE.iter().filter(|e| e.dominates()).collect();
+    let dominant = moving[rng.random_range(0..moving.len())];
+    let small: Vec<_> = CATALOGUE.iter().filter(|e| e.shrinks() && e.id != dominant.id).collect();
     let mut drawn: Vec<Hidden> = Vec::new();
     while drawn.len() < 10 {
         let entry = small[rng.random_range(0..small.len())];
@@ -102,7 +104,11 @@ pub fn clutter(vehicle: &Vehicle, rng: &mut StdRng) -> Vec<Hidden> {
             drawn.push(Hidden::sized(entry.id, sign * size, vehicle, rng));
         }
     }
-    drawn.push(Hidden::draw(dominant, vehicle, rng));
+    let [low, high] = dominant.range(vehicle);
+    let middle = (low * high).sqrt();
+    let size = if dominant.grows_downwards() { log_range(rng, low, middle) } else { log_range(rng, middle, high) };
+    let sign = if dominant.signed && rng.random_bool(0.5) { -1.0 } else { 1.0 };
+    drawn.push(Hidden::sized(dominant.id, sign * size, vehicle, rng));
     drawn
 }
 

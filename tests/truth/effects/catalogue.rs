@@ -108,6 +108,22 @@ impl Entry {
         [self.low * pack, self.high * pack]
     }
 
+    /// Whether a smaller size is more of it.
+    pub fn grows_downwards(&self) -> bool {
+        matches!(self.id, "rate_second_order" | "rate_slew_limit")
+    }
+
+    /// Whether it changes how the vehicle flies, and in ordinary flight.
+    pub fn dominates(&self) -> bool {
+        let only_measured = self.id.starts_with("imu_")
+            || self.id.starts_with("accel_")
+            || self.id.starts_with("gyro_")
+            || matches!(self.id, "stream_offset" | "clock_skew" | "velocity_lag" | "vibration_rectification");
+        let rarely_felt =
+            matches!(self.id, "ground_effect" | "gyroscopic_coupling" | "yaw_authority_loss" | "ocv_curve");
+        !only_measured && !rarely_felt
+    }
+
     /// Whether it vanishes with its size.
     pub fn shrinks(&self) -> bool {
         !matches!(self.id, "rate_second_order" | "rate_slew_limit" | "thrust_asymmetric_lag")
