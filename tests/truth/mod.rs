@@ -1,12 +1,16 @@
 //! An independent simulator: makes flight logs whose truth is known. It shares no equation with the crate; from there it
 //! takes only the type of a log and, as the human at the sticks, the pilot.
 //!
+//! [`hidden`] is the same with effects that a diagnosis is to find ([`effects`]).
+//!
 //! command -> [`response`] -> [`thrust`], [`drag`] -> [`integrate`] -> [`sense`], each in its file.
 
 // Every test that includes this uses its own part.
 #![allow(dead_code, unused_imports)]
 
 pub mod drag;
+pub mod effects;
+pub mod hidden;
 pub mod integrate;
 pub mod response;
 pub mod sense;

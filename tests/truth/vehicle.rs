@@ -89,8 +89,12 @@ impl Vehicle {
     fn draw_thrust(&mut self, rng: &mut StdRng) {
         let seed = Self::seed_class();
         let same_thrust = (seed.full_v + seed.empty_v) / (self.full_v + self.empty_v);
-        let strength = rng.random_range(3.0..7.0);
-        loop {
+        let mut strength = rng.random_range(3.0..7.0);
+        for attempt in 1u64.. {
+            // Some strengths have no plausible curve near the seed class's.
+            if attempt % 10_000 == 0 {
+                strength = rng.random_range(3.0..7.0);
+            }
             self.thrust_n = seed.thrust_n.map(|c| c * rng.random_range(0.8..1.2));
             self.thrust_n[4] *= same_thrust;
             self.thrust_n[5] *= same_thrust;
@@ -116,6 +120,11 @@ impl Vehicle {
             if thrust::per_mass(self, middle, volts) < wanted { low = middle } else { high = middle }
         }
         0.5 * (low + high)
+    }
+
+    /// Thrust over mass at full throttle in the middle of the pack, m/s2.
+    pub fn thrust_at_full(&self) -> f64 {
+        thrust::per_mass(self, 1.0, 0.5 * (self.full_v + self.empty_v))
     }
 
     /// The same vehicle in the crate's terms.
