@@ -3,6 +3,7 @@
 mod bench;
 mod check;
 mod columns;
+mod diagnose;
 mod eval;
 mod findings;
 mod fly;
@@ -35,6 +36,7 @@ enum Command {
     Import(import::Args),
     Check(check::Args),
     Identify(identify::Args),
+    Diagnose(diagnose::Args),
     Bench(bench::Args),
 }
 
@@ -46,6 +48,7 @@ Exit codes:
   2    bad input: nothing was started
   3    a flight log is damaged; its readable part was used
   4    `--require` was not met
+  5    `--fail-on-effect` found an effect
   130  stopped by Ctrl-C";
 
 /// How a command ended, where it did not fail.
@@ -54,6 +57,7 @@ enum Outcome {
     Done,
     Damaged,
     NotMet,
+    Effect,
     Interrupted,
 }
 
@@ -63,6 +67,7 @@ impl Outcome {
             Outcome::Done => 0,
             Outcome::Damaged => 3,
             Outcome::NotMet => 4,
+            Outcome::Effect => 5,
             Outcome::Interrupted => 130,
         }
     }
@@ -77,6 +82,7 @@ pub fn main() -> ExitCode {
         Command::Fly(args) => fly::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),
+        Command::Diagnose(args) => diagnose::run(&args),
         Command::Import(args) => import::run(&args),
         Command::Bench(args) => bench::run(&args),
     };

@@ -1,6 +1,12 @@
-//! What the simulation gets wrong, and why: from the residuals of a flight to the effects that explain them.
+//! What the simulation gets wrong, and why: from the residuals of flights to the effects that explain them.
+//!
+//! Flights are predicted by the simulator's own equations ([`predict`]) and held against the measurement by channel ([`problem`]). Every effect of the
+//! catalogue is a direction in which the prediction could change; a score test ranks them beside what the compact model's own numbers could take up
+//! ([`gram`], [`select`]), the best are fitted ([`fit`]), and what is found has to be evident, replicated, of a size that matters ([`judge`]) and
+//! complete: nothing structured may be left ([`structure`]).
 
 pub mod drift;
+pub mod extend;
 pub mod finding;
 pub mod fit;
 pub mod gain;
@@ -8,6 +14,7 @@ pub mod gram;
 pub mod horizon;
 pub mod judge;
 pub mod model;
+pub mod plan;
 pub mod predict;
 pub mod problem;
 pub mod random;
@@ -15,3 +22,207 @@ pub mod record;
 pub mod select;
 pub mod structure;
 pub mod whiten;
+
+use crate::effects;
+use crate::flight::quality::Quality;
+use crate::identify::data::Data;
+use crate::stats::mean;
+use crate::vehicle::Vehicle;
+use finding::{Diagnosis, Finding, Residual, Status, Verdict};
+use judge::Judge;
+use model::Model;
+use problem::Problem;
+use record::Record;
+use select::{Added, Selection};
+use std::collections::BTreeMap;
+use structure::{NAMES, Structure};
+
+/// What the diagnosis is busy with: called before each step with its name and the share done so far.
+pub type Watch<'a> = &'a mut dyn FnMut(&str, f64);
+
+/// Structure that nobody needs to care about, as a root mean square: rad/s, m/s2, V.
+const IDLE: [f64; 3] = [0.025, 0.08, 0.02];
+/// Structure beside the noise, and beside what the findings explain of the same channel, that is called unexplained.
+const LEFT_OF_NOISE: f64 = 0.15;
+const LEFT_OF_EXPLAINED: f64 = 0.2;
+
+/// Flights and their diagnosis, with all that a report needs.
+pub struct Diagnosed {
+    pub diagnosis: Diagnosis,
+    /// The base vehicle with what was found.
+    pub vehicle: Vehicle,
+    pub problem: Problem,
+    pub selection: Selection,
+}
+
+/// Flights, ready to be held against `vehicle`.
+pub fn problem(logs: Vec<Quality>, vehicle: &Vehicle) -> Problem {
+    let data = Data::new(logs);
+    let one = |f| Record::new(f, record::full_rate(vehicle, &f.quality));
+    let records: Vec<Record> = data.flights.iter().map(one).collect();
+    let begin: Vec<f64> =
+        records.iter().map(|r| r.volts.first().map_or(vehicle.battery.full_v, |first| first.1)).collect();
+    Problem::new(Model::new(vehicle, &begin), records)
+}
+
+/// Diagnoses flights of a vehicle that is thought to be `vehicle`.
+pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnosed {
+    watch("predicting", 0.02);
+    let usable_s = logs.iter().map(|q| crate::flight::spans::length(&q.usable)).sum();
+    let problem = problem(logs, vehicle);
+    let mut selection = select::select(&problem, watch);
+    settle_chance(&problem, &mut selection);
+    watch("judging", 0.85);
+    let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
+    let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
+    let judge = Judge::new(&problem, &selection);
+    let mut findings: Vec<Finding> =
+        selection.added.iter().map(|a| judge.judge(a)).filter(|j| j.material).map(|j| j.finding).collect();
+    findings.extend(biases(&judge));
+    let force_structure = structure.iter().filter(|s| s.channel.starts_with("specific force")).map(|s| s.structure_rms);
+    findings.extend(random::gusts(&problem, &selection, force_structure.fold(0.0, f64::max)));
+    let (drift, cause) = drift::find(&judge);
+    findings.extend(cause);
+    watch("measuring the gain", 0.9);
+    let held = gain::measure(&problem, &selection);
+    for finding in &mut findings {
+        let shown = finding.explained.keys().filter_map(|c| held.channels.get(c).map(|g| (*c, g.clone())));
+        finding.gain = shown.collect();
+    }
+    let unexplained = unexplained(&structure, &findings, &selection, &problem);
+    for finding in &mut findings {
+        let left = unexplained.iter().find(|s| finding.explained.get(s.channel).is_some_and(|e| *e > 0.02));
+        if let (Some(left), true) = (left, finding.status != Status::Suspected) {
+            finding.status = Status::Suspected;
+            finding.why = Some(format!("structure remains in {} once it is in", left.channel));
+        }
+    }
+    findings.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+    let verdict = match (unexplained.is_empty(), findings.is_empty()) {
+        (false, _) => Verdict::Unexplained,
+        (true, true) => Verdict::Clean,
+        (true, false) => Verdict::Effects,
+    };
+    let (detectable, not_detectable) = plan::judge(&problem, &selection.reach);
+    let extended = extend::vehicle(&judge, &findings);
+    let diagnosis = Diagnosis {
+        verdict,
+        logs: problem.records.iter().map(|r| r.name.clone()).collect(),
+        base: vehicle.name.clone(),
+        usable_s,
+        findings,
+        unexplained,
+        not_detectable,
+        detectable,
+        drift,
+        residuals: residuals(&problem, &selection),
+        held_out: held.channels,
+        horizons: held.horizons,
+        captured: held.captured,
+        structure_before: before,
+        structure,
+    };
+    Diagnosed { diagnosis, vehicle: extended, problem, selection }
+}
+
+/// By impact; what is only suspected comes last.
+fn rank(finding: &Finding) -> f64 {
+    finding.impact + if finding.status == Status::Suspected { 0.0 } else { 1e6 }
+}
+
+/// Lost commands and a delay have the same mean: the variance decides.
+fn settle_chance(problem: &Problem, selection: &mut Selection) {
+    let about_loss = |a: &Added| {
+        let near = |c: &&effects::Card| matches!(c.id, "command_dropout");
+        near(&a.card) || a.ties.iter().any(|c| near(c))
+    };
+    let Some(i) = selection.added.iter().position(about_loss) else { return };
+    let lost = random::lost_commands(problem, selection);
+    let loss = random::decides_for_loss(&lost, random::share_like(selection));
+    let Some(dropout) = effects::card("command_dropout") else { return };
+    let size = random::share_like(selection);
+    let added = &mut selection.added[i];
+    if (added.card.id == dropout.id) == loss {
+        added.ties.retain(|c| c.id != dropout.id && !(loss && c.id == "rate_delay"));
+        if loss {
+            added.ties.clear();
+        }
+        return;
+    }
+    // The other one takes its place.
+    let Some(other) = (if loss { Some(dropout) } else { added.ties.iter().find(|c| c.id != dropout.id).copied() })
+    else {
+        return;
+    };
+    let mut x = selection.point.x.clone();
+    model::span(added.card).for_each(|k| x[k] = 0.0);
+    let own: Vec<usize> = model::span(other).collect();
+    x[own[0]] = if loss { size } else { other.parameters[0].typical[0] };
+    let mut free = selection.point.free.clone();
+    free.retain(|k| !model::span(added.card).contains(k));
+    free.extend(own);
+    selection.point = fit::fit(problem, &selection.whitener, &x, &free);
+    *added = Added { card: other, ties: Vec::new() };
+}
+
+/// Constant errors of the IMU, which every fit allows for.
+fn biases(judge: &Judge) -> Vec<Finding> {
+    // Larger than what any such sensor has, by a share of the smallest size that is one.
+    const SHARE: f64 = 0.8;
+    let point = &judge.selection.point;
+    let seen = |first: usize| !judge.problem.rows[first].is_empty();
+    let mut out = Vec::new();
+    for (id, channel) in [("gyro_bias", 6), ("accel_bias", 9)] {
+        let Some(card) = effects::card(id) else { continue };
+        let size = model::span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
+        if seen(channel) && size > SHARE * card.parameters[0].typical[0] {
+            out.push(judge.judge(&Added { card, ties: Vec::new() }).finding);
+        }
+    }
+    out
+}
+
+/// Channels in which structure is left that matters, beside the noise and beside what the findings explain.
+fn unexplained(
+    structure: &[Structure],
+    findings: &[Finding],
+    selection: &Selection,
+    problem: &Problem,
+) -> Vec<Structure> {
+    let gusts = findings.iter().any(|f| f.effect == "gusts");
+    let one = |s: &&Structure| {
+        let Some(c) = NAMES.iter().position(|(name, _)| *name == s.channel) else { return false };
+        let idle = IDLE[if c < 3 {
+            0
+        } else if c < 6 {
+            1
+        } else {
+            2
+        }];
+        let before = mean(&selection.base.residual[c].iter().map(|r| r * r).collect::<Vec<_>>());
+        let explained = (before - s.rms * s.rms).max(0.0).sqrt();
+        let coloured = if gusts && (3..6).contains(&c) { 0.0 } else { s.coloured_rms };
+        let left = s.structure_rms.max(coloured);
+        let _ = problem;
+        left > idle && left > LEFT_OF_NOISE * s.rms && left > LEFT_OF_EXPLAINED * explained
+    };
+    structure.iter().filter(one).cloned().collect()
+}
+
+fn residuals(problem: &Problem, selection: &Selection) -> BTreeMap<&'static str, Residual> {
+    let mut out = BTreeMap::new();
+    for (c, (name, unit)) in NAMES.into_iter().enumerate() {
+        let (base, now) = (&selection.base.residual[c], &selection.point.residual[c]);
+        if base.is_empty() {
+            continue;
+        }
+        let rms = |r: &[f64]| mean(&r.iter().map(|x| x * x).collect::<Vec<_>>()).sqrt();
+        let middle = mean(&problem.measured[c]);
+        let variance = mean(&problem.measured[c].iter().map(|m| (m - middle).powi(2)).collect::<Vec<_>>()).max(1e-300);
+        let (before, after) = (rms(base), rms(now));
+        let noise = selection.whitener.sd(c);
+        let (r2_before, r2_after) = (1.0 - before * before / variance, 1.0 - after * after / variance);
+        out.insert(name, Residual { before, after, noise, unit, r2_before, r2_after });
+    }
+    out
+}

@@ -30,7 +30,14 @@ pub fn find(judge: &Judge) -> (Vec<Drift>, Option<Finding>) {
         if change.abs() > SURE * sd && change.abs() > material * base.abs() {
             let half = 1.96 * sd * scale;
             let value = value * scale;
-            out.push(Drift { parameter: name.into(), base: base * scale, value, low: value - half, high: value + half, unit });
+            out.push(Drift {
+                parameter: name.into(),
+                base: base * scale,
+                value,
+                low: value - half,
+                high: value + half,
+                unit,
+            });
         }
     };
     for (range, material, scale, unit) in [
@@ -85,7 +92,10 @@ fn cause(judge: &Judge) -> Option<Finding> {
         .map(|card| {
             let k = span(card).start;
             let size = card.parameters[0].typical[0];
-            judge.selection.whitener.apply(&problem.secant(&point.state, &point.x, &[(k, size)], 1.0 / size), &problem.rows)
+            judge
+                .selection
+                .whitener
+                .apply(&problem.secant(&point.state, &point.x, &[(k, size)], 1.0 / size), &problem.rows)
         })
         .collect();
     let all: Vec<&Values> = point.white.iter().chain(&columns).chain([&residual]).collect();
@@ -93,11 +103,16 @@ fn cause(judge: &Judge) -> Option<Finding> {
     let of_interest = |k: usize| THRUST.contains(&k) || DRAG.contains(&k);
     let main: Vec<usize> = (0..n).filter(|&i| of_interest(point.free[i])).collect();
     let rest: Vec<usize> = (0..n).filter(|i| !main.contains(i)).collect();
-    let prior = |which: &[usize]| -> Vec<f64> { which.iter().map(|&i| problem.model.numbers[point.free[i]].trust.powi(-2)).collect() };
+    let prior = |which: &[usize]| -> Vec<f64> {
+        which.iter().map(|&i| problem.model.numbers[point.free[i]].trust.powi(-2)).collect()
+    };
     let inner = inverse(&Grams::pick(&grams.sum, &rest, &rest), &prior(&rest))?;
     let cross = Grams::pick(&grams.sum, &rest, &main);
     let metric: DMatrix<f64> = Grams::pick(&grams.sum, &main, &main) - cross.transpose() * &inner * &cross;
-    let moved = DVector::from_iterator(main.len(), main.iter().map(|&i| point.x[point.free[i]] - problem.model.base[point.free[i]]));
+    let moved = DVector::from_iterator(
+        main.len(),
+        main.iter().map(|&i| point.x[point.free[i]] - problem.model.base[point.free[i]]),
+    );
     let energy = (moved.transpose() * &metric * &moved)[(0, 0)];
     let own: Vec<usize> = (0..n).collect();
     let everything = inverse(&Grams::pick(&grams.sum, &own, &own), &prior(&own))?;
@@ -119,10 +134,13 @@ fn cause(judge: &Judge) -> Option<Finding> {
         }
     }
     // A change of thrust alone, in proportion, is no effect.
-    let scale = DVector::from_iterator(main.len(), main.iter().map(|&i| {
-        let k = point.free[i];
-        if THRUST.contains(&k) { problem.model.base[k] } else { 0.0 }
-    }));
+    let scale = DVector::from_iterator(
+        main.len(),
+        main.iter().map(|&i| {
+            let k = point.free[i];
+            if THRUST.contains(&k) { problem.model.base[k] } else { 0.0 }
+        }),
+    );
     let weight = &metric * &scale;
     let norm = (scale.transpose() * &weight)[(0, 0)].max(1e-300);
     let plain = ((weight.transpose() * &moved)[(0, 0)]).powi(2) / norm / energy.max(1e-300);

@@ -45,7 +45,8 @@ pub fn measure(problem: &Problem, selection: &Selection) -> HeldOut {
     let squares = |p: &Point| fit::costs(problem, &test.apply(&p.residual, &problem.rows)).iter().sum::<f64>();
     let floor = test.expected();
     let (before, after) = (squares(&base), squares(&extended));
-    let captured = (!selection.added.is_empty() && before > 1.05 * floor).then(|| (before - after) / (before - floor).max(1e-9));
+    let captured =
+        (!selection.added.is_empty() && before > 1.05 * floor).then(|| (before - after) / (before - floor).max(1e-9));
     HeldOut {
         channels: channels(problem, &base, &extended, &out),
         horizons: horizons(problem, &base, &extended, &out),

@@ -32,9 +32,17 @@ struct Reached {
 }
 
 /// Errors of the model at `x`, whose prediction is `state`, over the flight between samples of which `wanted` holds.
-pub fn errors(model: &Model, record: &Record, state: &Predicted, x: &[f64], wanted: &dyn Fn(usize) -> bool) -> Vec<Horizon> {
+pub fn errors(
+    model: &Model,
+    record: &Record,
+    state: &Predicted,
+    x: &[f64],
+    wanted: &dyn Fn(usize) -> bool,
+) -> Vec<Horizon> {
     let runs = runs(model, record, state, x, wanted);
-    let world = |i: usize, v: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| (0..3).map(|j| record.axes[i][j][k] * v[j]).sum()) };
+    let world = |i: usize, v: [f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|k| (0..3).map(|j| record.axes[i][j][k] * v[j]).sum())
+    };
     let mut sums = [[0.0; 3]; AT_S.len()];
     let mut counts = [0usize; AT_S.len()];
     for run in &runs {
@@ -75,7 +83,13 @@ pub fn apart(model: &Model, record: &Record, a: (&Predicted, &[f64]), b: (&Predi
     crate::stats::mean(&squares).sqrt()
 }
 
-fn runs(model: &Model, record: &Record, state: &Predicted, x: &[f64], wanted: &dyn Fn(usize) -> bool) -> Vec<[Reached; 3]> {
+fn runs(
+    model: &Model,
+    record: &Record,
+    state: &Predicted,
+    x: &[f64],
+    wanted: &dyn Fn(usize) -> bool,
+) -> Vec<[Reached; 3]> {
     let p = model.parameters(x);
     let n = record.time.len();
     let since = record.since();

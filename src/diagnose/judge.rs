@@ -93,7 +93,8 @@ impl<'a> Judge<'a> {
             for (a, &i) in rest.iter().enumerate() {
                 let k = self.point().free[i];
                 let number = &self.problem.model.numbers[k];
-                let taken: f64 = own.iter().enumerate().map(|(b, &j)| absorbed[(a, b)] * self.point().x[self.point().free[j]]).sum();
+                let taken: f64 =
+                    own.iter().enumerate().map(|(b, &j)| absorbed[(a, b)] * self.point().x[self.point().free[j]]).sum();
                 x[k] = (x[k] + taken).clamp(number.low, number.high);
             }
         }
@@ -162,15 +163,15 @@ impl<'a> Judge<'a> {
         let at = span(card);
         let x = &self.point().x;
         let places: Vec<usize> = self.places(card);
-        let tau_places: Vec<usize> = [TAU.start, TAU.end - 1]
-            .iter()
-            .filter_map(|k| self.point().free.iter().position(|f| f == k))
-            .collect();
+        let tau_places: Vec<usize> =
+            [TAU.start, TAU.end - 1].iter().filter_map(|k| self.point().free.iter().position(|f| f == k)).collect();
         let values: Vec<f64> = at.clone().map(|k| x[k]).collect();
         let shown = |k: &[f64], tau: [f64; 2]| -> Vec<(String, f64, String)> {
             match card.shown {
                 Some(shown) => shown(k, tau).into_iter().map(|(n, v, u)| (n.to_string(), v, u.to_string())).collect(),
-                None => card.parameters.iter().zip(k).map(|(p, v)| (p.name.to_string(), *v, p.unit.to_string())).collect(),
+                None => {
+                    card.parameters.iter().zip(k).map(|(p, v)| (p.name.to_string(), *v, p.unit.to_string())).collect()
+                }
             }
         };
         let tau = [x[TAU.start], x[TAU.end - 1]];
@@ -196,7 +197,10 @@ impl<'a> Judge<'a> {
                 .map(|(a, b)| a.1 * b.1 * self.covariance[(a.0, b.0)])
                 .sum();
             let half = Z * variance.max(0.0).sqrt();
-            out.insert(name.clone(), Value { value: *value, low: value - half, high: value + half, unit: unit.clone() });
+            out.insert(
+                name.clone(),
+                Value { value: *value, low: value - half, high: value + half, unit: unit.clone() },
+            );
         }
         out
     }
@@ -216,9 +220,12 @@ impl<'a> Judge<'a> {
         let model = &self.problem.model;
         let state = self.problem.predict(without);
         let with = &self.point().state;
-        let distances = self.problem.records.iter().enumerate().map(|(f, record)| {
-            horizon::apart(model, record, (&with[f], &self.point().x), (&state[f], without))
-        });
+        let distances = self
+            .problem
+            .records
+            .iter()
+            .enumerate()
+            .map(|(f, record)| horizon::apart(model, record, (&with[f], &self.point().x), (&state[f], without)));
         let apart = distances.fold(0.0, f64::max);
         if apart > 0.0 { apart } else { sensors }
     }

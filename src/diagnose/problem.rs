@@ -40,6 +40,7 @@ impl Problem {
         let mut out = Self { model, records, rows: Default::default(), measured: Default::default(), blocks: 0 };
         let start = out.predict(&out.model.base);
         let gravity = out.model.vehicle().gravity_m_s2;
+        out.blocks = out.records.iter().filter_map(|r| r.block.last()).map(|b| *b as usize + 1).max().unwrap_or(0);
         for (f, record) in out.records.iter().enumerate() {
             let seen = measured(record, gravity);
             for c in 0..CHANNELS {
@@ -54,7 +55,6 @@ impl Problem {
                     let block = record.block[(from + to) / 2];
                     out.rows[c].push(Row { flight: f as u32, index: i as u32, block, sample: from as u32, follows });
                     out.measured[c].push(seen[c][i]);
-                    out.blocks = out.blocks.max(block as usize + 1);
                 }
             }
         }

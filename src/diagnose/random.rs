@@ -34,8 +34,7 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
         }
         let noise = robust_sd(residual).powi(2);
         let energy = energy(problem, &point.x, axis);
-        let expected: Vec<f64> =
-            rows.iter().map(|row| energy[row.flight as usize][row.index as usize]).collect();
+        let expected: Vec<f64> = rows.iter().map(|row| energy[row.flight as usize][row.index as usize]).collect();
         let middle = mean(&expected);
         for (i, row) in rows.iter().enumerate() {
             // Weights of the best estimate for a share of a percent or so.
@@ -111,7 +110,8 @@ pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Op
             lags[axis][which] = sum / n;
             blocks.iter().zip(&mut blocks_all).for_each(|(b, all)| all[which] += b / n);
             if which == 0 {
-                agree[axis] = if sum > 0.0 { sum * sum / blocks.iter().map(|b| b * b).sum::<f64>().max(1e-300) } else { 0.0 };
+                agree[axis] =
+                    if sum > 0.0 { sum * sum / blocks.iter().map(|b| b * b).sum::<f64>().max(1e-300) } else { 0.0 };
             }
         }
     }

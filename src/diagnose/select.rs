@@ -111,7 +111,7 @@ pub fn candidates(problem: &Problem, held: &[&'static Card]) -> Vec<&'static Car
     let in_base = |card: &Card| span(card).any(|k| problem.model.base[k] != 0.0);
     let bias = |card: &Card| matches!(card.id, "gyro_bias" | "accel_bias");
     cards()
-        .filter(|card| card.kind != Kind::Random && !bias(card) && !in_base(card))
+        .filter(|card| card.id != "gusts" && !bias(card) && !in_base(card))
         .filter(|card| held.iter().all(|h| h.id != card.id))
         .collect()
 }

@@ -146,7 +146,8 @@ fn explained(features: &[&Feature], y: &[f64], fold: &[u32]) -> f64 {
     let solution: Vec<Option<DVector<f64>>> = (0..FOLDS as usize)
         .map(|k| {
             let rest = &whole - &normal[k];
-            let full = DMatrix::from_fn(n, n, |i, j| rest[(i.max(j), i.min(j))] + if i == j { ridge + 1e-9 } else { 0.0 });
+            let full =
+                DMatrix::from_fn(n, n, |i, j| rest[(i.max(j), i.min(j))] + if i == j { ridge + 1e-9 } else { 0.0 });
             full.cholesky().map(|c| c.solve(&(&whole_right - &right[k])))
         })
         .collect();

@@ -5,7 +5,7 @@ use super::{Card, Channel, Effect, Kind, Parameter, Sensed};
 pub struct It;
 
 const fn bias(name: &'static str) -> Parameter {
-    Parameter { name, unit: "rad/s", low: -0.06, high: 0.06, typical: [0.005, 0.02] }
+    Parameter { name, unit: "rad/s", low: -0.06, high: 0.06, typical: [0.01, 0.03] }
 }
 
 impl Effect for It {

@@ -11,7 +11,7 @@ impl Effect for It {
         name: "gyroscopic coupling",
         sentence: "a turn about two axes at once drags in the third",
         kind: Kind::Timing,
-        parameters: &[Parameter { name: "k", unit: "1", low: -0.15, high: 0.15, typical: [0.01, 0.05] }],
+        parameters: &[Parameter { name: "k", unit: "1", low: -1.0, high: 1.0, typical: [0.01, 0.05] }],
         channels: &[Channel::Rate],
         signature: "the rate of one axis follows the product of the two others",
         rivals: &["rate_cross_coupling"],

@@ -1,4 +1,4 @@
-//! An IMU that is mounted askew: rates and force x become x - r x x, r a small rotation of the sensor's axes.
+//! An IMU that is mounted askew: rates and force x become x + r x x, r the small rotation from the body to the sensor.
 
 use super::{Card, Channel, Effect, Kind, Parameter, Sensed};
 use crate::dynamics::attitude::cross;
@@ -27,7 +27,7 @@ impl Effect for It {
         let r = [k[0], k[1], k[2]];
         for read in [&mut sensed.rates, &mut sensed.force] {
             let turned = cross(r, *read);
-            (0..3).for_each(|i| read[i] -= turned[i]);
+            (0..3).for_each(|i| read[i] += turned[i]);
         }
     }
 }

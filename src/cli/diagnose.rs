@@ -1,0 +1,241 @@
+//! `racer diagnose`: what the simulation gets wrong, and why.
+
+use super::{Outcome, columns, findings, tell};
+use crate::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
+use crate::diagnose::{Diagnosed, diagnose};
+use crate::flight::quality::{Quality, check};
+use crate::flight::{self, Readable};
+use crate::fsio::Reserved;
+use crate::identify::{self, identify};
+use crate::vehicle::Vehicle;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+
+/// Show what the simulation gets wrong, name the cause, and extend the model
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Args {
+    /// Logs of one vehicle in the order of flight: MCAP, Betaflight blackbox, PX4 ULog or CSV
+    #[arg(required = true, value_name = "LOG")]
+    logs: Vec<PathBuf>,
+    /// The vehicle that the simulation takes it for: a name or a file [default: identified from the logs]
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<String>,
+    /// New file for everything that was found, as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// New file for the extended vehicle, which `racer train --vehicle` reads
+    #[arg(long, value_name = "V.toml")]
+    extend: Option<PathBuf>,
+    /// Only say what these flights could show and tell apart, and what to fly next
+    #[arg(long)]
+    plan: bool,
+    /// End with exit code 5 where an effect or unexplained structure is found
+    #[arg(long)]
+    fail_on_effect: bool,
+    /// What the logs' fields mean: a mapping's name or file [default: the format's own, or the one that fits]
+    #[arg(long, value_name = "NAME|FILE")]
+    mapping: Option<String>,
+    /// Without --vehicle: the vehicle that lends what the logs cannot tell
+    #[arg(long, value_name = "NAME|FILE", default_value = "seed_class")]
+    base: String,
+}
+
+const HELP: &str = "The flight is predicted from its commands by the simulator's own equations. What the residuals show is tested against a \
+catalogue of effects; those that are evident, replicated, of a size that matters, and leave nothing structured behind, are named, with \
+what they are worth on flight that was not used for fitting.
+
+Exit code 3 means that a log is damaged and that its readable part was used, 5 that --fail-on-effect found something.
+
+Examples:
+  racer diagnose flight.mcap --vehicle mine.toml
+  racer diagnose flight.mcap --vehicle mine.toml --extend better.toml
+  racer diagnose flight.mcap --plan";
+
+/// Reads, checks, diagnoses, writes, prints.
+pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    let reserve = |path: &Option<PathBuf>| path.as_deref().map(Reserved::new).transpose();
+    let (json, extended) = (reserve(&args.json)?, reserve(&args.extend)?);
+    let given = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
+    let bar = ProgressBar::new(100);
+    bar.set_style(ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}")?);
+    let mut logs: Vec<Quality> = Vec::new();
+    for path in &args.logs {
+        bar.set_message(format!("reading {}", path.display()));
+        let opened = flight::open_with(path, flight::Options { mapping: args.mapping.as_deref(), flight: None })?;
+        let quality = check(&opened.log);
+        bar.suspend(|| {
+            opened.remarks.iter().for_each(|remark| tell(remark));
+            tell(&findings::findings(&quality.findings));
+        });
+        logs.push(quality);
+    }
+    let damaged = logs.iter().any(|quality| quality.log.readable != Readable::Whole);
+    let vehicle = match given {
+        Some(vehicle) => vehicle,
+        None => {
+            let options = identify::Options {
+                base: Vehicle::load(&args.base)?,
+                mass_kg: None,
+                max_rate_rad_s: None,
+                rate_cutoff_hz: 100.0,
+                force_cutoff_hz: 30.0,
+            };
+            identify(logs.clone(), &options, &mut |step, _| bar.set_message(format!("identifying: {step}"))).vehicle
+        }
+    };
+    let Diagnosed { diagnosis, vehicle, .. } = diagnose(logs, &vehicle, &mut |step, share| {
+        bar.set_position((100.0 * share) as u64);
+        bar.set_message(step.to_string());
+    });
+    bar.finish_and_clear();
+    super::print(&if args.plan { plan(&diagnosis) } else { text(&diagnosis) })?;
+    if let Some(json) = json {
+        let document = serde_json::to_string_pretty(&diagnosis)?;
+        tell(&format!("figures in {}", json.write(format!("{document}\n").as_bytes())?.display()));
+    }
+    if let Some(file) = extended {
+        let written = file.write(toml::to_string(&vehicle)?.as_bytes())?;
+        tell(&format!("extended vehicle in {0}: racer train --vehicle {0}", written.display()));
+    }
+    Ok(if args.fail_on_effect && diagnosis.verdict != Verdict::Clean {
+        Outcome::Effect
+    } else if damaged {
+        Outcome::Damaged
+    } else {
+        Outcome::Done
+    })
+}
+
+/// What is wrong, why, what it is worth, what to fly next.
+fn text(d: &Diagnosis) -> String {
+    let mut out = vec![headline(d)];
+    for (i, finding) in d.findings.iter().enumerate() {
+        out.push(format!("{}. {}", i + 1, paragraph(finding)));
+    }
+    for s in &d.unexplained {
+        let along = s.along.map_or(String::new(), |a| {
+            format!("; it lines up with {a} ({:.0} % of the residual)", 100.0 * s.along_share)
+        });
+        let size = s.structure_rms.max(s.coloured_rms);
+        out.push(format!("structure remains in {}: {:.3} {} of {:.3}{along}", s.channel, size, s.unit, s.rms));
+    }
+    if !d.drift.is_empty() {
+        let rows = d.drift.iter().map(|x| {
+            vec![
+                x.parameter.clone(),
+                format!("{:.4}", x.base),
+                format!("{:.4} ({:.4} to {:.4})", x.value, x.low, x.high),
+                x.unit.into(),
+            ]
+        });
+        let table = columns::table(&["drift against the base", "was", "is (95 % interval)", ""], rows.collect(), 1..2);
+        out.push(table);
+    }
+    let rows = d.held_out.iter().map(|(name, g)| {
+        vec![
+            name.to_string(),
+            format!("{:.4}", g.before),
+            format!("{:.4}", g.after),
+            g.unit.to_string(),
+            format!("{:.4}", g.r2_before),
+            format!("{:.4}", g.r2_after),
+        ]
+    });
+    let header = ["on flight not used for fitting", "RMSE before", "after", "", "R2 before", "after"];
+    out.push(columns::table(&header, rows.collect(), 1..6));
+    if !d.horizons.is_empty() {
+        let rows = d.horizons.iter().map(|a| {
+            vec![
+                format!("{:.2} s", a.before.after_s),
+                format!("{:.3} -> {:.3}", a.before.velocity_m_s, a.after.velocity_m_s),
+                format!("{:.3} -> {:.3}", a.before.position_m, a.after.position_m),
+                format!("{:.2} -> {:.2}", a.before.attitude_deg, a.after.attitude_deg),
+                a.before.starts.to_string(),
+            ]
+        });
+        out.push(columns::table(&["open loop, after", "m/s off", "m off", "deg off", "starts"], rows.collect(), 1..5));
+    }
+    if let Some(captured) = d.captured {
+        out.push(format!("{:.0} % of what a better model could gain on that flight was gained", 100.0 * captured));
+    }
+    let next: Vec<&str> = d.findings.iter().filter(|f| f.status != Status::Named).map(|f| f.manoeuvre).collect();
+    if let Some(next) = next.first() {
+        out.push(format!("fly next: {next}"));
+    }
+    out.push(not_shown(d));
+    out.join("\n\n")
+}
+
+fn headline(d: &Diagnosis) -> String {
+    let seconds = d.usable_s;
+    match d.verdict {
+        Verdict::Clean => format!("no effect beyond noise in {seconds:.0} s of flight"),
+        Verdict::Effects => {
+            format!("{} in {seconds:.0} s of flight; nothing structured is left", count(d.findings.len()))
+        }
+        Verdict::Unexplained => {
+            let what = if d.findings.is_empty() {
+                "structure".into()
+            } else {
+                format!("{}, and structure", count(d.findings.len()))
+            };
+            format!("{what} that no effect of the catalogue explains, in {seconds:.0} s of flight")
+        }
+    }
+}
+
+fn count(n: usize) -> String {
+    if n == 1 { "one effect".into() } else { format!("{n} effects") }
+}
+
+fn paragraph(f: &Finding) -> String {
+    let values = f
+        .parameters
+        .iter()
+        .map(|(name, v)| format!("{name} {:.4} ({:.4} to {:.4}) {}", v.value, v.low, v.high, v.unit));
+    let status = match f.status {
+        Status::Named => String::new(),
+        Status::NamedSet => format!(" - or {}: these flights do not tell them apart", f.members[1..].join(", ")),
+        Status::Suspected => format!(" - suspected only: {}", f.why.as_deref().unwrap_or("")),
+    };
+    let explained =
+        f.explained.iter().map(|(c, share)| format!("{:.0} % of {c}", 100.0 * share)).collect::<Vec<_>>().join(", ");
+    format!(
+        "{} ({}){status}\n   {}\n   {}\n   explains {explained}; {:.0} stretches agree; {:.2} m/s after a second",
+        f.name,
+        f.effect,
+        f.sentence,
+        values.collect::<Vec<_>>().join(", "),
+        f.stretches,
+        f.impact
+    )
+}
+
+/// What the flights could not show.
+fn not_shown(d: &Diagnosis) -> String {
+    let names: Vec<&str> = d.not_detectable.iter().map(|h| h.effect).collect();
+    if names.is_empty() {
+        "every effect would have shown".into()
+    } else {
+        format!("could not have shown: {}", names.join(", "))
+    }
+}
+
+/// What the flights could show and tell apart.
+fn plan(d: &Diagnosis) -> String {
+    let rows = d.detectable.iter().map(|p| {
+        vec![
+            p.effect.to_string(),
+            format!("{:.2e}", p.smallest),
+            format!("{:.2e}", p.told_apart),
+            p.nearest.unwrap_or("-").to_string(),
+            format!("{} to {}", p.typical[0], p.typical[1]),
+            p.unit.to_string(),
+        ]
+    });
+    let header = ["effect", "seen from", "told apart from", "nearest rival", "typical", ""];
+    let table = columns::table(&header, rows.collect(), 1..3);
+    let cannot = d.not_detectable.iter().map(|h| format!("\n  {}: {}", h.effect, h.why)).collect::<String>();
+    format!("these flights could show\n\n{table}\n\nand could not{cannot}")
+}
