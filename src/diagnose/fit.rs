@@ -168,13 +168,24 @@ fn descend(
 
 /// Fits `point` with the numbers `own` beside its own, from `start`; the derivatives of the point's own numbers are taken as they are there.
 pub fn refit(problem: &Problem, whitener: &Whitener, point: &Point, own: &[usize], start: &[f64]) -> Point {
-    let free: Vec<usize> = point.free.iter().chain(own).copied().collect();
+    // Rates and forces hardly know of each other: what the numbers do not touch stays as it is.
+    let all = || own.iter().map(|&k| &problem.model.numbers[k]);
+    let (rates, forces) = (all().any(|n| n.rates), all().any(|n| n.forces));
+    let touched = |k: &usize| {
+        let n = &problem.model.numbers[*k];
+        rates && n.rates || forces && n.forces
+    };
+    let kept: Vec<usize> = (0..point.free.len()).filter(|&j| touched(&point.free[j])).collect();
+    let free: Vec<usize> = kept.iter().map(|&j| point.free[j]).chain(own.iter().copied()).collect();
     let mut x = point.x.clone();
     own.iter().zip(start).for_each(|(&k, value)| x[k] = *value);
-    let mut at = evaluate(problem, whitener, x);
+    let state = problem.change(&point.state, own, &x);
+    let residual = problem.residuals(&state);
+    let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
+    let mut at = Point { x, state, free: Vec::new(), white: Vec::new(), residual, cost };
     for _ in 0..CHORDS + 2 {
         let mine = whitened_slopes(problem, whitener, &at.state, &at.x, own);
-        let white: Vec<&Values> = point.white.iter().chain(&mine).collect();
+        let white: Vec<&Values> = kept.iter().map(|&j| &point.white[j]).chain(&mine).collect();
         let gram = Grams::new(&white, &problem.rows, problem.blocks).sum;
         let whitened = whitener.apply(&at.residual, &problem.rows);
         let Some(step) = step(problem, &gram, &white, &whitened, &at.x, &free) else { break };
@@ -185,15 +196,8 @@ pub fn refit(problem: &Problem, whitener: &Whitener, point: &Point, own: &[usize
             break;
         }
     }
-    at.free = free;
+    at.free = point.free.iter().chain(own).copied().collect();
     at
-}
-
-fn evaluate(problem: &Problem, whitener: &Whitener, x: Vec<f64>) -> Point {
-    let state = problem.predict(&x);
-    let residual = problem.residuals(&state);
-    let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
-    Point { x, state, free: Vec::new(), white: Vec::new(), residual, cost }
 }
 
 /// Covariance of the fitted numbers of `point` by leaving out one stretch of time after the other (the cluster jackknife, CR3).

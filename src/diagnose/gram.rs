@@ -96,6 +96,8 @@ pub struct Score {
     pub raw: DVector<f64>,
     /// What the rest would have to become to take the group's place: (J'J)^-1 J'S.
     pub absorbed: DMatrix<f64>,
+    /// Information and score of each stretch of time.
+    pub blocks: Vec<(DMatrix<f64>, DMatrix<f64>)>,
 }
 
 /// The score test of columns `group` beside columns `rest` for column `residual`. `prior` is that of all columns.
@@ -120,9 +122,9 @@ pub fn score(grams: &Grams, rest: &[usize], group: &[usize], residual: usize, pr
     let (information, u) = own(g);
     let change = inverse(&information, &vec![1e-300; group.len()])? * &u;
     let mut spread = DMatrix::zeros(group.len(), group.len());
-    for block in &grams.blocks {
-        let (_, ub) = own(block);
-        spread += &ub * ub.transpose();
+    let blocks: Vec<_> = grams.blocks.iter().map(own).collect();
+    for (_, ub) in &blocks {
+        spread += ub * ub.transpose();
     }
     let robust = inverse(&spread, &vec![1e-300; group.len()])?;
     let evidence = (u.transpose() * robust * &u)[(0, 0)];
@@ -133,5 +135,6 @@ pub fn score(grams: &Grams, rest: &[usize], group: &[usize], residual: usize, pr
         information: information.diagonal(),
         raw: Grams::pick(g, group, group).diagonal(),
         absorbed,
+        blocks,
     })
 }

@@ -11,11 +11,13 @@ use super::select::{Added, Selection};
 use super::structure::NAMES;
 use crate::effects::{Card, Kind};
 use crate::stats::mean;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
 /// Stretches of flight that have to agree before an effect is named.
 pub const REPLICATED: f64 = 15.0;
+/// Standard deviations that its size has to be.
+const SURE: f64 = 5.0;
 /// 97.5 % quantile of the normal distribution.
 const Z: f64 = 1.96;
 /// Gravity, for turning angles into velocities, m/s2.
@@ -27,6 +29,13 @@ pub struct Judge<'a> {
     pub selection: &'a Selection,
     pub covariance: DMatrix<f64>,
     grams: Grams,
+}
+
+/// How often an effect was seen, and how many standard deviations its size is.
+#[derive(Clone, Copy, Debug, Default)]
+struct Replicated {
+    count: f64,
+    sure: f64,
 }
 
 /// A judged effect, and the numbers of the model without it.
@@ -55,8 +64,9 @@ impl<'a> Judge<'a> {
         span(card).filter_map(|k| self.point().free.iter().position(|f| *f == k)).collect()
     }
 
-    /// Stretches that agree on the effect: the robust score of leaving it out.
-    fn stretches(&self, card: &Card) -> f64 {
+    /// How many stretches of flight agree on the effect. Either all do a little (the robust score of leaving it out counts them), or a few do by
+    /// themselves, beyond two standard deviations, less those that contradict; with how sure all together are.
+    fn stretches(&self, card: &Card) -> Replicated {
         let own = self.places(card);
         let n = self.point().free.len();
         let rest: Vec<usize> = (0..n).filter(|i| !own.contains(i)).collect();
@@ -75,8 +85,25 @@ impl<'a> Judge<'a> {
                 }
             }
         }
-        let prior = vec![0.0; n + 1];
-        score(&grams, &rest, &own, n, &prior).map_or(0.0, |s| s.evidence / own.len() as f64)
+        let Some(score) = score(&grams, &rest, &own, n, &vec![0.0; n + 1]) else { return Replicated::default() };
+        let size = DVector::from_iterator(own.len(), sizes.iter().map(|(_, size)| *size));
+        let mut alone: f64 = 0.0;
+        for block in &score.blocks {
+            // Along the fitted direction: what this stretch alone makes of its size, in standard deviations.
+            let (left, right) = block;
+            let information = (size.transpose() * left * &size)[(0, 0)].max(1e-12);
+            let agrees = size.dot(&right.column(0)) / information.sqrt();
+            alone += if agrees > 2.0 {
+                1.0
+            } else if agrees < -2.0 {
+                -1.0
+            } else {
+                0.0
+            };
+        }
+        let covariance = Grams::pick(&self.covariance, &own, &own);
+        let sure = inverse(&covariance, &vec![0.0; own.len()]).map_or(0.0, |c| (size.transpose() * c * &size)[(0, 0)]);
+        Replicated { count: alone.max(score.evidence / own.len() as f64), sure: sure.max(0.0).sqrt() }
     }
 
     /// Change of the prediction that the effect makes, by channel, beside what the other numbers could take over, in physical units; and
@@ -127,16 +154,17 @@ impl<'a> Judge<'a> {
             }
         }
         let parameters = self.parameters(card);
-        let stretches = self.stretches(card);
+        let Replicated { count: stretches, sure } = self.stretches(card);
         let material = is_material(card, &self.point().x);
-        let status = if stretches < REPLICATED {
+        let evident = stretches >= REPLICATED && sure >= SURE;
+        let status = if !evident {
             Status::Suspected
         } else if added.ties.is_empty() {
             Status::Named
         } else {
             Status::NamedSet
         };
-        let why = (stretches < REPLICATED).then(|| format!("only {stretches:.0} stretches of flight agree"));
+        let why = (!evident).then(|| format!("only {stretches:.0} stretches of flight agree"));
         let (manoeuvre, kinds) = card.manoeuvre;
         let finding = Finding {
             effect: card.id,

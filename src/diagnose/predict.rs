@@ -237,12 +237,12 @@ impl Predicted {
                 let half = small_rotation([mean[0], mean[1], mean[2]], 0.5 * h);
                 let middle = compose(turn, half);
                 turn = normalized(compose(middle, half));
-                let push = match &lagged {
-                    None => in_world(&body_axes(middle), [mean[3], mean[4], mean[5]]),
-                    Some(world) => std::array::from_fn(|j| {
-                        (0..3).map(|c| axes[j][c] * 0.5 * (world[i][c] + world[i + 1][c])).sum()
-                    }),
-                };
+                let mut push = in_world(&body_axes(middle), [mean[3], mean[4], mean[5]]);
+                if let Some(world) = &lagged {
+                    for j in 0..3 {
+                        push[j] += (0..3).map(|c| axes[j][c] * 0.5 * (world[i][c] + world[i + 1][c])).sum::<f64>();
+                    }
+                }
                 (0..3).for_each(|j| pushed[j] += h * push[j]);
             }
             let rotated = vector(turn);
@@ -349,7 +349,7 @@ fn shifted(record: &Record, offset: f64) -> Vec<[f64; 3]> {
     (0..n).map(|i| std::array::from_fn(|k| at(record.time[i] + offset, k, i))).collect()
 }
 
-/// Accelerations in the world, less gravity's part, behind a first-order lag of `tau` seconds.
+/// What a first-order lag of `tau` seconds adds to accelerations, in the world.
 #[inline(always)]
 fn lagged(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
     let mut now = [0.0; 3];
@@ -362,7 +362,8 @@ fn lagged(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
             let next = now[k] + alpha * (world[k] - now[k]);
             now[k] = if next.is_finite() { next } else { now[k] };
         }
-        out.push(now);
+        let added: [f64; 3] = std::array::from_fn(|k| now[k] - world[k]);
+        out.push(added.map(|x| if x.is_finite() { x } else { 0.0 }));
     }
     out
 }

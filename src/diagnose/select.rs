@@ -2,6 +2,7 @@
 
 use super::fit::{self, Point};
 use super::gram::{Grams, score};
+use super::judge::is_material;
 use super::model::{BEGIN, DISCHARGE, cards, span};
 use super::problem::{Problem, Values};
 use super::whiten::Whitener;
@@ -15,6 +16,8 @@ const SHORT_LIST: usize = 6;
 /// Least fall of the whitened squares, and least number of agreeing stretches, for a candidate to be added.
 pub const GAIN: f64 = 30.0;
 pub const EVIDENCE: f64 = 9.0;
+/// Fall of the whitened squares for which even an effect of no size that matters is added.
+const NUISANCE: f64 = 400.0;
 /// Rivals that come so near the best by standard deviations of their difference are a tie.
 pub const TIE: f64 = 2.5;
 /// Share of its information that a candidate keeps beside the base; below, the base absorbs it.
@@ -148,17 +151,28 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
         let cards = candidates(problem, &held);
         let mut found = columns(problem, &whitener, &point, &cards);
         // Noise is what is left when everything is taken off that any cause could explain.
-        for _ in 0..2 {
+        for _ in 0..if round == 0 { 2 } else { 1 } {
             whitener = saturated(problem, &whitener, &point, &found);
             point = fit::fit(problem, &whitener, &point.x, &point.free);
             found.iter_mut().for_each(|(_, change, white)| *white = whitener.apply(change, &problem.rows));
         }
-        let (scored, reached) = rank(problem, &whitener, &point, &found);
+        let (scored, reached) = rank(problem, &whitener, &point, &found, round == 0);
         if round == 0 {
             reach = reached;
         }
         let trials = try_best(problem, &whitener, &point, &found, &scored);
-        let Some(best) = trials.iter().max_by(|a, b| a.gain.total_cmp(&b.gain)) else { break };
+        let best_of = |material: bool| {
+            let fitting = trials.iter().filter(|t| !material || is_material(t.card, &t.point.x));
+            fitting.max_by(|a, b| a.gain.total_cmp(&b.gain))
+        };
+        let Some(mut best) = best_of(false) else { break };
+        // What is too small to matter is kept beside the causes only where it would stand in their way.
+        if !is_material(best.card, &best.point.x) && best.gain < NUISANCE {
+            match best_of(true) {
+                Some(material) if material.gain >= GAIN => best = material,
+                _ => break,
+            }
+        }
         if std::env::var("RACER_TRACE").is_ok() {
             for t in &trials {
                 eprintln!(
@@ -216,6 +230,7 @@ fn rank(
     whitener: &Whitener,
     point: &Point,
     found: &[(Direction, Values, Values)],
+    reach_too: bool,
 ) -> (Vec<(usize, f64, f64)>, Vec<Reach>) {
     let residual = whitener.apply(&point.residual, &problem.rows);
     let n = point.white.len();
@@ -236,6 +251,9 @@ fn rank(
     }
     order.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut reach: Vec<Reach> = Vec::new();
+    if !reach_too {
+        return (order, reach);
+    }
     for (j, s) in scores.iter().enumerate() {
         let (Some(s), card) = (s, found[j].0.card) else { continue };
         if reach.iter().any(|r| r.card.id == card.id) {

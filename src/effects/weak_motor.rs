@@ -20,7 +20,10 @@ impl Effect for It {
         signature: "the mean rate without command grows in proportion to the throttle",
         rivals: &["gyro_bias"],
         manoeuvre: ("slow throttle sweeps with the other sticks centred", &["ramp-up", "ramp-down", "punch"]),
-        shown: None,
+        shown: Some(|k, _| {
+            let b = (k[0].abs() + k[1].abs() + k[2].abs()) / 3.0;
+            vec![("bx", k[0], "rad/s"), ("by", k[1], "rad/s"), ("bz", k[2], "rad/s"), ("b", b, "rad/s")]
+        }),
     };
 
     #[inline(always)]
