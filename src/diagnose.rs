@@ -20,6 +20,7 @@ pub mod problem;
 pub mod random;
 pub mod record;
 pub mod select;
+pub mod skew;
 pub mod structure;
 pub mod whiten;
 
@@ -45,6 +46,8 @@ const IDLE: [f64; 3] = [0.025, 0.08, 0.02];
 /// Structure beside the noise, and beside what the findings explain of the same channel, that is called unexplained.
 const LEFT_OF_NOISE: f64 = 0.15;
 const LEFT_OF_EXPLAINED: f64 = 0.2;
+/// What a finding explains has to be so many times the structure that is left.
+const ADEQUATE: f64 = 1.5;
 
 /// Flights and their diagnosis, with all that a report needs.
 pub struct Diagnosed {
@@ -62,7 +65,11 @@ pub fn problem(logs: Vec<Quality>, vehicle: &Vehicle) -> Problem {
     let records: Vec<Record> = data.flights.iter().map(one).collect();
     let begin: Vec<f64> =
         records.iter().map(|r| r.volts.first().map_or(vehicle.battery.full_v, |first| first.1)).collect();
-    Problem::new(Model::new(vehicle, &begin), records)
+    let mut model = Model::new(vehicle, &begin);
+    if records.iter().all(|r| r.from_rotors) {
+        model.forget_voltage();
+    }
+    Problem::new(model, records)
 }
 
 /// Diagnoses flights of a vehicle that is thought to be `vehicle`.
@@ -90,11 +97,10 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         finding.gain = shown.collect();
     }
     let unexplained = unexplained(&structure, &findings, &selection, &problem);
-    for finding in &mut findings {
-        let left = unexplained.iter().find(|s| finding.explained.get(s.channel).is_some_and(|e| *e > 0.02));
-        if let (Some(left), true) = (left, finding.status != Status::Suspected) {
+    for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected) {
+        if let Some(channel) = outweighed(finding, &structure) {
             finding.status = Status::Suspected;
-            finding.why = Some(format!("structure remains in {} once it is in", left.channel));
+            finding.why = Some(format!("more structure remains in {channel} than it explains"));
         }
     }
     findings.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
@@ -123,6 +129,14 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         structure,
     };
     Diagnosed { diagnosis, vehicle: extended, problem, selection }
+}
+
+/// The channel in which more structure is left than the finding explains, if it is the one that the finding is about.
+fn outweighed(finding: &Finding, structure: &[Structure]) -> Option<&'static str> {
+    let left = structure.iter().find(|s| s.channel == finding.channel)?;
+    let share = finding.explained.get(finding.channel)?.min(0.999_999);
+    let explained = left.rms * (share / (1.0 - share)).sqrt();
+    (left.structure_rms > explained / ADEQUATE).then_some(left.channel)
 }
 
 /// By impact; what is only suspected comes last.

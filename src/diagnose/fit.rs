@@ -88,6 +88,15 @@ pub fn fit(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) ->
     unreachable!("the last renewal returns")
 }
 
+/// The point `x` as it is, with what is linear about the numbers `free`.
+pub fn stay(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) -> Point {
+    let state = problem.predict(x);
+    let residual = problem.residuals(&state);
+    let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
+    let white = whitened_slopes(problem, whitener, &state, x, free);
+    Point { x: x.to_vec(), state, free: free.to_vec(), white, residual, cost }
+}
+
 /// [`Problem::slopes`], whitened.
 pub fn whitened_slopes(
     problem: &Problem,

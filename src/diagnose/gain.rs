@@ -3,6 +3,7 @@
 use super::finding::{Ahead, Gain};
 use super::fit::{self, Point};
 use super::horizon;
+use super::model::BEGIN;
 use super::predict::CHANNELS;
 use super::problem::Problem;
 use super::select::Selection;
@@ -41,6 +42,18 @@ pub fn measure(problem: &Problem, selection: &Selection) -> HeldOut {
         base.clone()
     } else {
         fit::fit(problem, &train, &selection.point.x, &selection.point.free)
+    };
+    // A flight that was held out as a whole has not told yet with which voltage it began.
+    let last = problem.records.len() - 1;
+    let (base, extended) = if last > 0 {
+        let begin = [BEGIN + last];
+        let settled = |p: Point| {
+            let free = p.free.clone();
+            Point { free, ..fit::fit(problem, &test, &p.x, &begin) }
+        };
+        (settled(base), settled(extended))
+    } else {
+        (base, extended)
     };
     let squares = |p: &Point| fit::costs(problem, &test.apply(&p.residual, &problem.rows)).iter().sum::<f64>();
     let floor = test.expected();

@@ -123,12 +123,15 @@ impl Model {
             let rates = card.channels.contains(&Channel::Rate);
             let moves = [both || rates, both || !rates || card.channels.len() > 1];
             for p in card.parameters {
+                // A time constant that goes to nothing is another effect.
+                let shape = p.name == "tau" && card.parameters.len() > 1;
+                let low = if shape { 0.3 * p.typical[0] } else { p.low };
                 let value = if base_index(card) { own[span_of(card, p.name)] } else { 0.0 };
                 add(
                     &format!("{}.{}", card.id, p.name),
                     p.unit,
                     value,
-                    [p.low, p.high],
+                    [low, p.high],
                     0.05 * p.typical[0],
                     3.0 * p.typical[1],
                     stage,
@@ -140,6 +143,16 @@ impl Model {
             add(&format!("begin_v.{flight}"), "V", *volts, [0.0, 1e3], 1e-2, 10.0, Stage::Battery, [false, true]);
         }
         Self { numbers, base, vehicle: vehicle.clone() }
+    }
+
+    /// Where the thrust command is a measured rotor speed, the voltage has no part in the thrust.
+    pub fn forget_voltage(&mut self) {
+        let middle = 0.5 * (self.vehicle.battery.full_v + self.vehicle.battery.empty_v);
+        for (with, without) in [(4, 0), (5, 1)] {
+            self.base[THRUST.start + without] += middle * self.base[THRUST.start + with];
+            self.base[THRUST.start + with] = 0.0;
+            (self.numbers[THRUST.start + with].low, self.numbers[THRUST.start + with].high) = (0.0, 0.0);
+        }
     }
 
     /// The parameters of the extended model at `x`, for steps of any length.

@@ -217,12 +217,13 @@ impl Predicted {
         let stretch = 1.0 / (1.0 + model.of(x, "clock_skew", "skew"));
         let tau = model.of(x, "velocity_lag", "tau");
         let gyro = shifted(record, offset);
-        let slope = slopes(&record.time, &gyro);
+        let fine = &record.fine;
+        let slope = slopes(&fine.time, &gyro);
         let mut corrected: Vec<[f64; 6]> = Vec::with_capacity(gyro.len());
         for i in 0..gyro.len() {
-            let throttle = extended::throttle(self.command[i][3]);
+            let throttle = extended::throttle(self.command[i / fine.every][3]);
             let throttle = if throttle.is_finite() { throttle } else { 0.0 };
-            let force = [record.imu[3][i], record.imu[4][i], record.imu[5][i]];
+            let force = [fine.imu[3][i], fine.imu[4][i], fine.imu[5][i]];
             corrected.push(truth(k, [gyro[i], force], slope[i], throttle));
         }
         let lagged = if tau > 0.0 { Some(lagged(record, &corrected, tau)) } else { None };
@@ -231,8 +232,8 @@ impl Predicted {
             let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
             let mut pushed = [0.0; 3];
             let axes = record.axes[from];
-            for i in from..to {
-                let h = (record.time[i + 1] - record.time[i]) * stretch;
+            for i in from * fine.every..to * fine.every {
+                let h = (fine.time[i + 1] - fine.time[i]) * stretch;
                 let mean: [f64; 6] = std::array::from_fn(|j| 0.5 * (corrected[i][j] + corrected[i + 1][j]));
                 let half = small_rotation([mean[0], mean[1], mean[2]], 0.5 * h);
                 let middle = compose(turn, half);
@@ -331,22 +332,22 @@ fn truth(k: &[f64], measured: [[f64; 3]; 2], acceleration: [f64; 3], throttle: f
 /// The measured rates as they were when their late samples say they are.
 #[inline(always)]
 fn shifted(record: &Record, offset: f64) -> Vec<[f64; 3]> {
-    let n = record.time.len();
+    let n = record.fine.time.len();
     if offset == 0.0 {
-        return (0..n).map(|i| std::array::from_fn(|k| record.imu[k][i])).collect();
+        return (0..n).map(|i| std::array::from_fn(|k| record.fine.imu[k][i])).collect();
     }
     let at = |t: f64, k: usize, near: usize| {
         let mut i = near.min(n - 2);
-        while i > 0 && record.time[i] > t {
+        while i > 0 && record.fine.time[i] > t {
             i -= 1;
         }
-        while i + 2 < n && record.time[i + 1] < t {
+        while i + 2 < n && record.fine.time[i + 1] < t {
             i += 1;
         }
-        let share = ((t - record.time[i]) / (record.time[i + 1] - record.time[i])).clamp(0.0, 1.0);
-        record.imu[k][i] + share * (record.imu[k][i + 1] - record.imu[k][i])
+        let share = ((t - record.fine.time[i]) / (record.fine.time[i + 1] - record.fine.time[i])).clamp(0.0, 1.0);
+        record.fine.imu[k][i] + share * (record.fine.imu[k][i + 1] - record.fine.imu[k][i])
     };
-    (0..n).map(|i| std::array::from_fn(|k| at(record.time[i] + offset, k, i))).collect()
+    (0..n).map(|i| std::array::from_fn(|k| at(record.fine.time[i] + offset, k, i))).collect()
 }
 
 /// What a first-order lag of `tau` seconds adds to accelerations, in the world.
@@ -355,9 +356,9 @@ fn lagged(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
     let mut now = [0.0; 3];
     let mut out = Vec::with_capacity(corrected.len());
     for i in 0..corrected.len() {
-        let h = if i > 0 { record.time[i] - record.time[i - 1] } else { 1.0 };
+        let h = if i > 0 { record.fine.time[i] - record.fine.time[i - 1] } else { 1.0 };
         let alpha = crate::dynamics::response::alpha(tau, h);
-        let world = in_world(&record.axes[i], [corrected[i][3], corrected[i][4], corrected[i][5]]);
+        let world = in_world(&record.axes[i / record.fine.every], [corrected[i][3], corrected[i][4], corrected[i][5]]);
         for k in 0..3 {
             let next = now[k] + alpha * (world[k] - now[k]);
             now[k] = if next.is_finite() { next } else { now[k] };

@@ -1,6 +1,7 @@
 //! A flight, ready to be predicted: what was commanded, what the surroundings were, and what was measured, on the IMU's clock.
 
 use crate::dynamics::attitude::{Quaternion, body_axes};
+use crate::flight::Log;
 use crate::flight::quality::Quality;
 use crate::flight::series::{interpolated, last_at, period};
 use crate::identify::flight::Flight;
@@ -14,11 +15,25 @@ const OVER_S: f64 = 0.25;
 /// Odometry slower than this is not integrated over, Hz.
 const LEAST_RATE_HZ: f64 = 40.0;
 
+/// The IMU is thinned to about this rate for the residuals of rates and forces, Hz: what more of it says is the same again. What is
+/// integrated stays whole.
+const ENOUGH_HZ: f64 = 250.0;
+
+/// The whole IMU, for integration.
+#[derive(Debug)]
+pub struct Fine {
+    pub time: Vec<f64>,
+    pub imu: [Vec<f64>; 6],
+    /// Its samples for one of the record's.
+    pub every: usize,
+}
+
 /// One flight.
 #[derive(Debug)]
 pub struct Record {
     pub name: String,
-    /// Of the IMU, s.
+    pub fine: Fine,
+    /// Of the thinned IMU, s.
     pub time: Vec<f64>,
     pub usable: Vec<bool>,
     /// Stretch of time of each sample, counted over all flights.
@@ -27,6 +42,9 @@ pub struct Record {
     pub sent: Vec<(f64, [f64; 4])>,
     /// Whether rates and thrust were commanded.
     pub commanded: [bool; 2],
+    /// Whether commands and IMU were stamped by one clock, and whether the thrust command is in truth a measured rotor speed.
+    pub one_clock: bool,
+    pub from_rotors: bool,
     /// Body rates (rad/s) and specific force (m/s2) as measured.
     pub imu: [Vec<f64>; 6],
     /// Velocity, body frame, m/s; 0 throughout where the log does not know it.
@@ -53,7 +71,11 @@ impl Record {
     pub fn new(flight: &Flight, full_rate_rad_s: [f64; 3]) -> Self {
         let quality = &flight.quality;
         let log = &quality.log;
-        let time = flight.time.clone();
+        let every = ((1.0 / period(&flight.time)) / ENOUGH_HZ * 1.05).floor().max(1.0) as usize;
+        let thin = |x: &[f64]| -> Vec<f64> { x.iter().copied().step_by(every).collect() };
+        let fine = Fine { time: flight.time.clone(), imu: std::array::from_fn(|k| flight.measured(k)), every };
+        let time = thin(&flight.time);
+        let usable: Vec<bool> = flight.usable.iter().copied().step_by(every).collect();
         let odometry = &log.odometry;
         let at = |k: usize| interpolated(&odometry.time_s, &odometry.column(k), &time, 0.25);
         let q: [Vec<f64>; 4] = std::array::from_fn(|k| signed_attitude(odometry, k, &time));
@@ -64,28 +86,35 @@ impl Record {
         let attitude: Vec<_> = if turns { attitude } else { vec![level; time.len()] };
         let axes = attitude.iter().map(|q| body_axes(*q)).collect();
         let moves = flight.velocity[0].iter().any(|v| v.is_finite());
-        let velocity = if moves { flight.velocity.clone() } else { std::array::from_fn(|_| vec![0.0; time.len()]) };
+        let velocity = if moves {
+            std::array::from_fn(|k| thin(&flight.velocity[k]))
+        } else {
+            std::array::from_fn(|_| vec![0.0; time.len()])
+        };
         let position: [Vec<f64>; 3] = std::array::from_fn(at);
         let finite: Vec<f64> = position[2].iter().copied().filter(|z| z.is_finite()).collect();
         let ground = quantile(&finite, 0.002);
         let height = position[2].iter().map(|z| if ground.is_finite() { z - ground } else { 1e3 }).collect();
         let volts = log.battery.time_s.iter().zip(&log.battery.rows).filter(|(_, row)| row[0] > 0.0);
         let volts = volts.map(|(t, row)| (last_at(&time, *t).map_or(0, |i| i + 1), row[0]));
-        let volts = volts.filter(|(i, _)| *i < time.len() && flight.usable[*i]).collect();
+        let volts = volts.filter(|(i, _)| *i < time.len() && usable[*i]).collect();
         let mut out = Self {
             name: log.name.clone(),
-            usable: flight.usable.clone(),
-            block: flight.block.clone(),
+            usable,
+            block: flight.block.iter().copied().step_by(every).collect(),
             sent: sent(quality, full_rate_rad_s),
+            one_clock: one_clock(log),
+            from_rotors: from_rotors(log),
             commanded: [0, 3].map(|k| log.setpoint.rows.iter().any(|row| row[k].is_finite())),
-            imu: std::array::from_fn(|k| flight.measured(k)),
+            imu: std::array::from_fn(|k| thin(&fine.imu[k])),
+            fine,
             velocity,
             moves,
             attitude,
             axes,
             height,
             position,
-            voltage: flight.voltage.clone(),
+            voltage: thin(&flight.voltage),
             volts,
             windows: Vec::new(),
             bins: Vec::new(),
@@ -130,10 +159,26 @@ impl Record {
         out
     }
 
-    /// Time of flight before each sample, s.
+    /// When the flight begins, s.
     pub fn since(&self) -> f64 {
         self.time.iter().zip(&self.usable).find(|(_, usable)| **usable).map_or(0.0, |(t, _)| *t)
     }
+}
+
+/// Whether nearly every command carries the time stamp of a sample of the IMU.
+fn one_clock(log: &Log) -> bool {
+    let same = |t: &&f64| last_at(&log.imu.time_s, **t).is_some_and(|i| log.imu.time_s[i] == **t);
+    let n = log.setpoint.len();
+    n > 0 && log.setpoint.time_s.iter().filter(same).count() > n * 9 / 10
+}
+
+/// Whether the thrust command is the mean rotor speed in another unit.
+fn from_rotors(log: &Log) -> bool {
+    let speeds = log.rotors.rows.iter().map(|row| row.iter().sum::<f64>());
+    let ratios: Vec<f64> = log.setpoint.rows.iter().zip(speeds).map(|(row, speed)| row[3] / speed).collect();
+    let finite: Vec<f64> = ratios.into_iter().filter(|r| r.is_finite()).collect();
+    let middle = crate::stats::median(&finite);
+    finite.len() > 100 && finite.iter().filter(|r| (*r / middle - 1.0).abs() < 1e-6).count() > finite.len() * 9 / 10
 }
 
 /// Component `k` of the attitude at `times`, of quaternions whose signs do not jump.

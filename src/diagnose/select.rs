@@ -20,6 +20,8 @@ pub const EVIDENCE: f64 = 9.0;
 const NUISANCE: f64 = 400.0;
 /// Rivals that come so near the best by standard deviations of their difference are a tie.
 pub const TIE: f64 = 2.5;
+/// Rivals compete where the one leaves at most this share of its gain to the other.
+const COMPETES: f64 = 0.3;
 /// Share of its information that a candidate keeps beside the base; below, the base absorbs it.
 pub const ABSORBED: f64 = 2e-3;
 
@@ -76,6 +78,7 @@ pub fn base_numbers(problem: &Problem) -> Vec<usize> {
     all.sort_unstable();
     all.dedup();
     let state = problem.predict(&problem.model.base);
+    all.retain(|&k| problem.model.numbers[k].high > problem.model.numbers[k].low);
     all.retain(|&k| !problem.slope(&state, &problem.model.base, k).iter().all(Vec::is_empty));
     all
 }
@@ -113,7 +116,9 @@ pub fn directions(card: &'static Card) -> Vec<Direction> {
 pub fn candidates(problem: &Problem, held: &[&'static Card]) -> Vec<&'static Card> {
     let in_base = |card: &Card| span(card).any(|k| problem.model.base[k] != 0.0);
     let bias = |card: &Card| matches!(card.id, "gyro_bias" | "accel_bias");
+    let one_clock = problem.records.iter().all(|r| r.one_clock);
     cards()
+        .filter(|card| !(one_clock && card.id == "clock_skew"))
         .filter(|card| card.id != "gusts" && !bias(card) && !in_base(card))
         .filter(|card| held.iter().all(|h| h.id != card.id))
         .collect()
@@ -126,7 +131,15 @@ fn columns(
     point: &Point,
     cards: &[&'static Card],
 ) -> Vec<(Direction, Values, Values)> {
-    let all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
+    let mut all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
+    if let Some(card) = cards.iter().find(|card| card.id == "clock_skew")
+        && let Some(skew) = super::skew::estimate(problem, &point.state, &point.residual)
+        && skew.abs() > 0.3 * card.parameters[0].typical[0]
+    {
+        // Nothing else would come near.
+        all.retain(|d| d.card.id != card.id);
+        all.push(Direction { card, start: vec![(span(card).start, skew)] });
+    }
     let one = |d: Direction| {
         let change = problem.secant(&point.state, &point.x, &d.start, 1.0);
         let finite = change.iter().flatten().all(|x| x.is_finite());
@@ -142,10 +155,18 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
     watch("fitting the base", 0.1);
     let plain = problem.residuals(&problem.predict(&problem.model.base));
     let mut whitener = Whitener::of(&plain, &problem.rows);
-    let mut point = fit::fit(problem, &whitener, &problem.model.base, &free);
+    let base_state = problem.predict(&problem.model.base);
+    let skewed = super::skew::estimate(problem, &base_state, &plain).is_some_and(|skew| skew.abs() > 5e-4);
+    // Clocks that run apart leave nothing that a fit of the base could be about.
+    let mut point = if skewed {
+        fit::stay(problem, &whitener, &problem.model.base, &free)
+    } else {
+        fit::fit(problem, &whitener, &problem.model.base, &free)
+    };
     let mut added: Vec<Added> = Vec::new();
     let mut reach = Vec::new();
-    for round in 0..MOST {
+    let mut pending: Vec<(&'static Card, f64)> = Vec::new();
+    for round in 0..=MOST {
         watch("weighing causes", 0.2 + 0.6 * round as f64 / MOST as f64);
         let held: Vec<&'static Card> = added.iter().map(|a| a.card).collect();
         let cards = candidates(problem, &held);
@@ -153,12 +174,28 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
         // Noise is what is left when everything is taken off that any cause could explain.
         for _ in 0..if round == 0 { 2 } else { 1 } {
             whitener = saturated(problem, &whitener, &point, &found);
-            point = fit::fit(problem, &whitener, &point.x, &point.free);
+            point = if skewed && round == 0 {
+                fit::stay(problem, &whitener, &point.x, &point.free)
+            } else {
+                fit::fit(problem, &whitener, &point.x, &point.free)
+            };
             found.iter_mut().for_each(|(_, change, white)| *white = whitener.apply(change, &problem.rows));
         }
         let (scored, reached) = rank(problem, &whitener, &point, &found, round == 0);
         if round == 0 {
             reach = reached;
+        }
+        // What had the same gain for another reason has it still.
+        if let Some(last) = added.last_mut() {
+            let still = |card: &Card| {
+                let gains = scored.iter().filter(|s| found[s.0].0.card.id == card.id).map(|s| s.1);
+                gains.fold(0.0, f64::max)
+            };
+            last.ties =
+                pending.drain(..).filter(|(card, gain)| still(card) < COMPETES * gain).map(|(card, _)| card).collect();
+        }
+        if round == MOST {
+            break;
         }
         let trials = try_best(problem, &whitener, &point, &found, &scored);
         let best_of = |material: bool| {
@@ -186,8 +223,9 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
         if best.gain < GAIN {
             break;
         }
-        let ties = trials.iter().filter(|t| t.card.id != best.card.id && tied(best, t)).map(|t| t.card).collect();
-        added.push(Added { card: best.card, ties });
+        let near = trials.iter().filter(|t| t.card.id != best.card.id && tied(best, t));
+        pending = near.map(|t| (t.card, t.gain)).collect();
+        added.push(Added { card: best.card, ties: Vec::new() });
         point = fit::fit(problem, &whitener, &best.point.x, &best.point.free);
     }
     let base = if added.is_empty() { point.clone() } else { fit::fit(problem, &whitener, &problem.model.base, &free) };
@@ -298,9 +336,15 @@ fn try_best(
         let own: Vec<usize> = span(card).collect();
         let begin: Vec<f64> =
             own.iter().map(|k| start.iter().find(|(i, _)| i == k).map_or(0.0, |(_, value)| *value)).collect();
-        let point = fit::refit(problem, whitener, point, &own, &begin);
-        let gain = before - point.total();
-        Trial { card, point, gain }
+        let mut refitted = fit::refit(problem, whitener, point, &own, &begin);
+        if refitted.total() > before {
+            // Too far away: from its smallest size, downhill.
+            let small: Vec<f64> =
+                begin.iter().zip(card.parameters).map(|(b, p)| b.signum() * b.abs().min(0.2 * p.typical[0])).collect();
+            refitted = fit::refit(problem, whitener, point, &own, &small);
+        }
+        let gain = before - refitted.total();
+        Trial { card, point: refitted, gain }
     };
     chosen.par_iter().map(one).collect()
 }
