@@ -41,6 +41,8 @@ use structure::{NAMES, Structure};
 /// What the diagnosis is busy with: called before each step with its name and the share done so far.
 pub type Watch<'a> = &'a mut dyn FnMut(&str, f64);
 
+/// Period of the commands, s.
+const CONTROL_S: f64 = 0.01;
 /// Structure that nobody needs to care about, as a root mean square: rad/s, m/s2, V.
 const IDLE: [f64; 3] = [0.025, 0.08, 0.02];
 /// Structure beside the noise, and beside what the findings explain of the same channel, that is called unexplained.
@@ -144,39 +146,41 @@ fn rank(finding: &Finding) -> f64 {
     finding.impact + if finding.status == Status::Suspected { 0.0 } else { 1e6 }
 }
 
-/// Lost commands and a delay have the same mean: the variance decides.
+/// Lost commands and a short delay have the same mean: the variance decides.
 fn settle_chance(problem: &Problem, selection: &mut Selection) {
-    let about_loss = |a: &Added| {
-        let near = |c: &&effects::Card| matches!(c.id, "command_dropout");
-        near(&a.card) || a.ties.iter().any(|c| near(c))
-    };
-    let Some(i) = selection.added.iter().position(about_loss) else { return };
-    let lost = random::lost_commands(problem, selection);
-    let loss = random::decides_for_loss(&lost, random::share_like(selection));
     let Some(dropout) = effects::card("command_dropout") else { return };
-    let size = random::share_like(selection);
-    let added = &mut selection.added[i];
-    if (added.card.id == dropout.id) == loss {
-        added.ties.retain(|c| c.id != dropout.id && !(loss && c.id == "rate_delay"));
-        if loss {
-            added.ties.clear();
+    let lost = random::lost_commands(problem, selection);
+    let are_lost = random::are_lost(&lost, dropout);
+    let at = |card: &effects::Card| model::span(card).start;
+    let mut x = selection.point.x.clone();
+    let mut free = selection.point.free.clone();
+    // A delay that lost commands account for is none.
+    let explained = |a: &Added, x: &[f64]| a.card.id == "rate_delay" && x[at(a.card)] < 3.0 * lost.share * CONTROL_S;
+    if are_lost {
+        let gone: Vec<Added> =
+            selection.added.iter().filter(|a| explained(a, &x) || a.card.id == dropout.id).cloned().collect();
+        for a in &gone {
+            model::span(a.card).for_each(|k| x[k] = 0.0);
+            free.retain(|k| !model::span(a.card).contains(k));
+            selection.added.retain(|other| other.card.id != a.card.id);
         }
+        selection.added.push(Added { card: dropout, ties: Vec::new() });
+        x[at(dropout)] = lost.share;
+        free.push(at(dropout));
+    } else if let Some(i) = selection.added.iter().position(|a| a.card.id == dropout.id) {
+        // Its mean is there, its variance is not: the rival that has the same mean.
+        let other = selection.added[i].ties.first().copied().or(effects::card("rate_delay"));
+        let Some(other) = other.filter(|o| selection.added.iter().all(|a| a.card.id != o.id)) else { return };
+        x[at(other)] = x[at(dropout)] * CONTROL_S;
+        x[at(dropout)] = 0.0;
+        free.retain(|k| *k != at(dropout));
+        free.extend(model::span(other));
+        selection.added[i] = Added { card: other, ties: Vec::new() };
+    } else {
+        selection.added.iter_mut().for_each(|a| a.ties.retain(|c| c.id != dropout.id));
         return;
     }
-    // The other one takes its place.
-    let Some(other) = (if loss { Some(dropout) } else { added.ties.iter().find(|c| c.id != dropout.id).copied() })
-    else {
-        return;
-    };
-    let mut x = selection.point.x.clone();
-    model::span(added.card).for_each(|k| x[k] = 0.0);
-    let own: Vec<usize> = model::span(other).collect();
-    x[own[0]] = if loss { size } else { other.parameters[0].typical[0] };
-    let mut free = selection.point.free.clone();
-    free.retain(|k| !model::span(added.card).contains(k));
-    free.extend(own);
     selection.point = fit::fit(problem, &selection.whitener, &x, &free);
-    *added = Added { card: other, ties: Vec::new() };
 }
 
 /// Constant errors of the IMU, which every fit allows for.

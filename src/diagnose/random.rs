@@ -1,7 +1,6 @@
 //! Effects of chance: they have no mean, or one that looks like another effect's, and show in the variance.
 
 use super::finding::{Finding, Status, Value};
-use super::model::span;
 use super::predict::{FORCE, RATE};
 use super::problem::Problem;
 use super::select::Selection;
@@ -78,10 +77,10 @@ fn energy(problem: &Problem, x: &[f64], axis: usize) -> Vec<Vec<f64>> {
     problem.records.iter().map(one).collect()
 }
 
-/// Whether lost commands, rather than a delay, explain what both would: their mean is the same, but lost ones make the rates noisier after every stick
-/// movement.
-pub fn decides_for_loss(lost: &Lost, delay_like_share: f64) -> bool {
-    lost.stretches >= REPLICATED && lost.share > 0.3 * delay_like_share && lost.share > 5e-4
+/// Whether the rates are noisier after stick movements as they are where commands get lost, and by a share that matters. Lost commands also delay, on average;
+/// a delay that is much longer is one of its own.
+pub fn are_lost(lost: &Lost, card: &Card) -> bool {
+    lost.stretches >= REPLICATED && lost.share > 0.5 * card.parameters[0].typical[0]
 }
 
 /// Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both horizontal axes.
@@ -155,10 +154,4 @@ pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Op
         kinds: kinds.to_vec(),
         why: None,
     })
-}
-
-/// Share of lost commands that makes the same mean as the delays of `selection`.
-pub fn share_like(selection: &Selection) -> f64 {
-    let of = |id: &str| effects::card(id).map_or(0.0, |card| selection.point.x[span(card).start].abs());
-    of("command_dropout").max(of("rate_delay") / 0.01)
 }

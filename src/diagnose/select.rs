@@ -154,7 +154,7 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
     let free = base_numbers(problem);
     watch("fitting the base", 0.1);
     let plain = problem.residuals(&problem.predict(&problem.model.base));
-    let mut whitener = Whitener::of(&plain, &problem.rows);
+    let mut whitener = Whitener::plain(&plain, &problem.rows);
     let base_state = problem.predict(&problem.model.base);
     let skewed = super::skew::estimate(problem, &base_state, &plain).is_some_and(|skew| skew.abs() > 5e-4);
     // Clocks that run apart leave nothing that a fit of the base could be about.

@@ -31,6 +31,14 @@ fn order(c: usize) -> usize {
 }
 
 impl Whitener {
+    /// Scales channels only: before anything is known of their noise. An autoregression of residuals that still hold a slow effect would
+    /// take the effect for noise.
+    pub fn plain(residual: &Values, rows: &[Vec<Row>; CHANNELS]) -> Self {
+        let filter = std::array::from_fn(|c| (Vec::new(), 1.0 / robust_sd(&residual[c]).max(1e-12)));
+        let weigh = |c: usize| if rows[c].len() < LEAST_ROWS { 0.0 } else { 1.0 };
+        Whitener { filter, weight: std::array::from_fn(|c| vec![weigh(c); rows[c].len()]) }
+    }
+
     /// From residuals in which no structure is left. `other` is a unit for channels without any.
     pub fn of(noise: &Values, rows: &[Vec<Row>; CHANNELS]) -> Self {
         let filter = std::array::from_fn(|c| autoregression(&noise[c], &rows[c], order(c)));
