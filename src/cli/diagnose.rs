@@ -109,7 +109,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
 
 /// What is wrong, why, what it is worth, what to fly next.
 fn text(d: &Diagnosis) -> String {
-    let mut out = vec![headline(d)];
+    let mut out = vec![d.headline()];
     for (i, finding) in d.findings.iter().enumerate() {
         out.push(format!("{}. {}", i + 1, paragraph(finding)));
     }
@@ -165,28 +165,6 @@ fn text(d: &Diagnosis) -> String {
     }
     out.push(not_shown(d));
     out.join("\n\n")
-}
-
-fn headline(d: &Diagnosis) -> String {
-    let seconds = d.usable_s;
-    match d.verdict {
-        Verdict::Clean => format!("no effect beyond noise in {seconds:.0} s of flight"),
-        Verdict::Effects => {
-            format!("{} in {seconds:.0} s of flight; nothing structured is left", count(d.findings.len()))
-        }
-        Verdict::Unexplained => {
-            let what = if d.findings.is_empty() {
-                "structure".into()
-            } else {
-                format!("{}, and structure", count(d.findings.len()))
-            };
-            format!("{what} that no effect of the catalogue explains, in {seconds:.0} s of flight")
-        }
-    }
-}
-
-fn count(n: usize) -> String {
-    if n == 1 { "one effect".into() } else { format!("{n} effects") }
 }
 
 fn paragraph(f: &Finding) -> String {
