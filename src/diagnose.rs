@@ -7,6 +7,7 @@
 
 pub mod drift;
 pub mod extend;
+pub mod figures;
 pub mod finding;
 pub mod fit;
 pub mod gain;

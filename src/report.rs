@@ -1,7 +1,10 @@
 //! Pictures of a run. They draw numbers and compute none.
 
+pub mod diagnosis;
 pub mod identification;
 pub mod lap;
+mod page;
+mod plot;
 pub mod training;
 
 use plotters::style::RGBColor;

@@ -5,11 +5,13 @@ use crate::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
 use crate::diagnose::{Diagnosed, diagnose};
 use crate::flight::quality::{Quality, check};
 use crate::flight::{self, Readable};
-use crate::fsio::Reserved;
+use crate::fsio::{self, Reserved};
 use crate::identify::{self, identify};
+use crate::report;
+use crate::report::diagnosis::Figures;
 use crate::vehicle::Vehicle;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Show what the simulation gets wrong, name the cause, and extend the model
 #[derive(Debug, clap::Args)]
@@ -27,6 +29,12 @@ pub struct Args {
     /// New file for the extended vehicle, which `racer train --vehicle` reads
     #[arg(long, value_name = "V.toml")]
     extend: Option<PathBuf>,
+    /// New file for the report with figures, one page
+    #[arg(long, value_name = "F.html")]
+    report: Option<PathBuf>,
+    /// New or empty folder for the figures, one SVG file each
+    #[arg(long, value_name = "DIR")]
+    svg: Option<PathBuf>,
     /// Only say what these flights could show and tell apart, and what to fly next
     #[arg(long)]
     plan: bool,
@@ -49,13 +57,15 @@ Exit code 3 means that a log is damaged and that its readable part was used, 5 t
 
 Examples:
   racer diagnose flight.mcap --vehicle mine.toml
+  racer diagnose flight.mcap --vehicle mine.toml --report diagnosis.html
   racer diagnose flight.mcap --vehicle mine.toml --extend better.toml
   racer diagnose flight.mcap --plan";
 
 /// Reads, checks, diagnoses, writes, prints.
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let reserve = |path: &Option<PathBuf>| path.as_deref().map(Reserved::new).transpose();
-    let (json, extended) = (reserve(&args.json)?, reserve(&args.extend)?);
+    let (json, extended, page) = (reserve(&args.json)?, reserve(&args.extend)?, reserve(&args.report)?);
+    args.svg.as_deref().map(fsio::new_folder).transpose()?;
     let given = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
     let bar = ProgressBar::new(100);
     bar.set_style(ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}")?);
@@ -84,18 +94,20 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
             identify(logs.clone(), &options, &mut |step, _| bar.set_message(format!("identifying: {step}"))).vehicle
         }
     };
-    let Diagnosed { diagnosis, vehicle, .. } = diagnose(logs, &vehicle, &mut |step, share| {
+    let diagnosed = diagnose(logs, &vehicle, &mut |step, share| {
         bar.set_position((100.0 * share) as u64);
         bar.set_message(step.to_string());
     });
     bar.finish_and_clear();
-    super::print(&if args.plan { plan(&diagnosis) } else { text(&diagnosis) })?;
+    let Diagnosed { diagnosis, vehicle, .. } = &diagnosed;
+    super::print(&if args.plan { plan(diagnosis) } else { text(diagnosis) })?;
+    show(&diagnosed, page, args.svg.as_deref())?;
     if let Some(json) = json {
-        let document = serde_json::to_string_pretty(&diagnosis)?;
+        let document = serde_json::to_string_pretty(diagnosis)?;
         tell(&format!("figures in {}", json.write(format!("{document}\n").as_bytes())?.display()));
     }
     if let Some(file) = extended {
-        let written = file.write(toml::to_string(&vehicle)?.as_bytes())?;
+        let written = file.write(toml::to_string(vehicle)?.as_bytes())?;
         tell(&format!("extended vehicle in {0}: racer train --vehicle {0}", written.display()));
     }
     Ok(if args.fail_on_effect && diagnosis.verdict != Verdict::Clean {
@@ -107,9 +119,28 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     })
 }
 
+/// Page and figures, where they are asked for.
+fn show(diagnosed: &Diagnosed, page: Option<Reserved>, folder: Option<&Path>) -> anyhow::Result<()> {
+    if page.is_none() && folder.is_none() {
+        return Ok(());
+    }
+    let figures = Figures::new(diagnosed)?;
+    if let Some(folder) = folder {
+        for figure in figures.all() {
+            fsio::write_new(&folder.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
+        }
+        tell(&format!("{} figures in {}", figures.all().count(), folder.display()));
+    }
+    if let Some(page) = page {
+        let written = page.write(report::diagnosis::page(diagnosed, &figures).as_bytes())?;
+        tell(&format!("report in {}", written.display()));
+    }
+    Ok(())
+}
+
 /// What is wrong, why, what it is worth, what to fly next.
 fn text(d: &Diagnosis) -> String {
-    let mut out = vec![headline(d)];
+    let mut out = vec![d.headline()];
     for (i, finding) in d.findings.iter().enumerate() {
         out.push(format!("{}. {}", i + 1, paragraph(finding)));
     }
@@ -165,28 +196,6 @@ fn text(d: &Diagnosis) -> String {
     }
     out.push(not_shown(d));
     out.join("\n\n")
-}
-
-fn headline(d: &Diagnosis) -> String {
-    let seconds = d.usable_s;
-    match d.verdict {
-        Verdict::Clean => format!("no effect beyond noise in {seconds:.0} s of flight"),
-        Verdict::Effects => {
-            format!("{} in {seconds:.0} s of flight; nothing structured is left", count(d.findings.len()))
-        }
-        Verdict::Unexplained => {
-            let what = if d.findings.is_empty() {
-                "structure".into()
-            } else {
-                format!("{}, and structure", count(d.findings.len()))
-            };
-            format!("{what} that no effect of the catalogue explains, in {seconds:.0} s of flight")
-        }
-    }
-}
-
-fn count(n: usize) -> String {
-    if n == 1 { "one effect".into() } else { format!("{n} effects") }
 }
 
 fn paragraph(f: &Finding) -> String {

@@ -155,3 +155,23 @@ pub struct Diagnosis {
     pub structure_before: Vec<Structure>,
     pub structure: Vec<Structure>,
 }
+
+impl Diagnosis {
+    /// The verdict in a sentence.
+    pub fn headline(&self) -> String {
+        let seconds = self.usable_s;
+        let found = match self.findings.len() {
+            1 => "one effect".into(),
+            n => format!("{n} effects"),
+        };
+        match self.verdict {
+            Verdict::Clean => format!("no effect beyond noise in {seconds:.0} s of flight"),
+            Verdict::Effects => format!("{found} in {seconds:.0} s of flight; nothing structured is left"),
+            Verdict::Unexplained => {
+                let what =
+                    if self.findings.is_empty() { "structure".into() } else { format!("{found}, and structure") };
+                format!("{what} that no effect of the catalogue explains, in {seconds:.0} s of flight")
+            }
+        }
+    }
+}

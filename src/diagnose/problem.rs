@@ -61,6 +61,13 @@ impl Problem {
         out
     }
 
+    /// Where each flight begins on a clock that runs through all of them, s.
+    pub fn clocks(&self) -> Vec<f64> {
+        let length = |r: &Record| r.time.last().map_or(0.0, |end| end - r.time[0]);
+        let after = |clock: &mut f64, r: &Record| Some(std::mem::replace(clock, *clock + length(r)));
+        self.records.iter().scan(0.0, after).collect()
+    }
+
     /// Predicts every flight at `x`.
     pub fn predict(&self, x: &[f64]) -> State {
         self.records.iter().enumerate().map(|(f, record)| Predicted::new(&self.model, record, f, x)).collect()

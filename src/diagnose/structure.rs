@@ -181,8 +181,14 @@ fn coloured(problem: &Problem, c: usize, y: &[f64]) -> f64 {
     m.cholesky().map_or(0.0, |cholesky| (cholesky.solve(&r).dot(&r) / total.max(1e-300)).clamp(0.0, 1.0))
 }
 
-/// Signals at the rows of channel `c`.
+/// Signals at the rows of channel `c`, cut into levels.
 fn features(problem: &Problem, state: &State, c: usize) -> Vec<Feature> {
+    let all = signals(problem, state, c);
+    all.into_iter().filter_map(|(name, _, values)| Feature::new(name, &values)).collect()
+}
+
+/// Signals at the rows of channel `c`, with their names and units.
+pub fn signals(problem: &Problem, state: &State, c: usize) -> Vec<(&'static str, &'static str, Vec<f64>)> {
     let rows = &problem.rows[c];
     let at = |f: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
         rows.iter().map(|row| f(row.flight as usize, row.sample as usize)).collect()
@@ -195,30 +201,30 @@ fn features(problem: &Problem, state: &State, c: usize) -> Vec<Feature> {
     let over_ground = |f: usize, i: usize| v(0)(f, i).hypot(v(1)(f, i));
     let w = |k: usize| move |f: usize, i: usize| state[f].rates[i][k];
     let heading = |f: usize, i: usize| records[f].axes[i][0][1].atan2(records[f].axes[i][0][0]);
-    let clock = |f: usize, i: usize| f as f64 * 1e4 + records[f].time[i];
-    let all: Vec<(&'static str, Vec<f64>)> = vec![
-        ("throttle", at(&s)),
-        ("change of throttle", at(&before)),
-        ("voltage", at(&|f, i| state[f].modelled_v[i])),
-        ("forward speed", at(&v(0))),
-        ("sideways speed", at(&v(1))),
-        ("vertical speed", at(&v(2))),
-        ("speed across the rotors", at(&over_ground)),
-        ("throttle times vertical speed", at(&|f, i| s(f, i) * v(2)(f, i))),
-        ("speed across times vertical speed", at(&|f, i| over_ground(f, i) * v(2)(f, i))),
-        ("height", at(&|f, i| records[f].height[i].min(50.0))),
-        ("time", at(&clock)),
-        ("heading", at(&heading)),
-        ("roll rate", at(&w(0))),
-        ("pitch rate", at(&w(1))),
-        ("yaw rate", at(&w(2))),
-        ("yaw rate times forward speed", at(&|f, i| w(2)(f, i) * v(0)(f, i))),
-        ("yaw rate times sideways speed", at(&|f, i| w(2)(f, i) * v(1)(f, i))),
-        ("lag of the rates", at(&|f, i| state[f].lag(i))),
-        ("position east", at(&|f, i| records[f].position[0][i])),
-        ("position north", at(&|f, i| records[f].position[1][i])),
-    ];
-    all.into_iter().filter_map(|(name, values)| Feature::new(name, &values)).collect()
+    let begins = problem.clocks();
+    let clock = |f: usize, i: usize| begins[f] + records[f].time[i] - records[f].time[0];
+    vec![
+        ("throttle", "share", at(&s)),
+        ("change of throttle", "share", at(&before)),
+        ("voltage", "V", at(&|f, i| state[f].modelled_v[i])),
+        ("forward speed", "m/s", at(&v(0))),
+        ("sideways speed", "m/s", at(&v(1))),
+        ("vertical speed", "m/s", at(&v(2))),
+        ("speed across the rotors", "m/s", at(&over_ground)),
+        ("throttle times vertical speed", "m/s", at(&|f, i| s(f, i) * v(2)(f, i))),
+        ("speed across times vertical speed", "m2/s2", at(&|f, i| over_ground(f, i) * v(2)(f, i))),
+        ("height", "m", at(&|f, i| records[f].height[i].min(50.0))),
+        ("time", "s", at(&clock)),
+        ("heading", "rad", at(&heading)),
+        ("roll rate", "rad/s", at(&w(0))),
+        ("pitch rate", "rad/s", at(&w(1))),
+        ("yaw rate", "rad/s", at(&w(2))),
+        ("yaw rate times forward speed", "m/s2", at(&|f, i| w(2)(f, i) * v(0)(f, i))),
+        ("yaw rate times sideways speed", "m/s2", at(&|f, i| w(2)(f, i) * v(1)(f, i))),
+        ("lag of the rates", "full sticks", at(&|f, i| state[f].lag(i))),
+        ("position east", "m", at(&|f, i| records[f].position[0][i])),
+        ("position north", "m", at(&|f, i| records[f].position[1][i])),
+    ]
 }
 
 impl Feature {

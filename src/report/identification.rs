@@ -6,38 +6,25 @@ use crate::identify::AXES;
 use crate::identify::document::CheckedLog;
 use crate::identify::estimate::Estimate;
 use crate::identify::result::Identification;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-
-const STYLE: &str = "body{font:16px/1.5 system-ui,sans-serif;max-width:960px;margin:2em auto;padding:0 1em;color:#111}
-table{border-collapse:collapse;margin:1em 0}td,th{padding:.2em .8em;text-align:right;border-bottom:1px solid #ccc}
-td:first-child,th:first-child{text-align:left}.why{color:#555}svg{width:100%;height:auto}";
+use crate::report::page::{self, number};
+use maud::{Markup, PreEscaped, html};
 
 /// The page as HTML.
 pub fn page(found: &Identification, logs: &[CheckedLog]) -> anyhow::Result<String> {
     let figures = found.channels.iter().map(figures::channel).collect::<anyhow::Result<Vec<_>>>()?;
-    let markup = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head { meta charset="utf-8"; title { (found.vehicle.name) } style { (PreEscaped(STYLE)) } }
-            body {
-                h1 { "Vehicle " (found.vehicle.name) }
-                p { (format!("Identified by racer {} from {:.0} s of usable flight.", env!("CARGO_PKG_VERSION"), found.usable_s)) }
-                (responses(found))
-                (parameters(found))
-                @if !found.remarks.is_empty() { h2 { "Remarks" } ul { @for remark in &found.remarks { li { (remark) } } } }
-                (assumed(found))
-                h2 { "Measured and predicted" }
-                p { "The line divides the part that the parameters were learned from and the part they are validated on. Below each: the residual." }
-                @for figure in &figures { (PreEscaped(figure)) }
-                (checks(logs))
-            }
-        }
+    let body = html! {
+        h1 { "Vehicle " (found.vehicle.name) }
+        p { (format!("Identified by racer {} from {:.0} s of usable flight.", env!("CARGO_PKG_VERSION"), found.usable_s)) }
+        (responses(found))
+        (parameters(found))
+        @if !found.remarks.is_empty() { h2 { "Remarks" } ul { @for remark in &found.remarks { li { (remark) } } } }
+        (assumed(found))
+        h2 { "Measured and predicted" }
+        p { "The line divides the part that the parameters were learned from and the part they are validated on. Below each: the residual." }
+        @for figure in &figures { (PreEscaped(figure)) }
+        (checks(logs))
     };
-    Ok(markup.into_string())
-}
-
-fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or("-".into(), |v| format!("{v:.digits$}"))
+    Ok(page::page(&found.vehicle.name, "", body))
 }
 
 /// The paper's Table 1.

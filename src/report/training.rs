@@ -1,13 +1,11 @@
 //! Learning curves of a run: what was gathered while training, and how its snapshots did (the paper's Figure 3).
 
 use super::drawing;
+use super::plot::{BLUE as BLUE_, ORANGE};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (900, 700);
-// Blue, orange and black are told apart by readers of every kind of colour vision (Okabe and Ito).
-const BLUE_: RGBColor = RGBColor(0, 114, 178);
-const ORANGE: RGBColor = RGBColor(213, 94, 0);
 
 /// One iteration.
 #[derive(Clone, Copy, Debug)]

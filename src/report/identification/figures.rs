@@ -3,10 +3,10 @@
 use crate::identify::rates::Compared;
 use crate::identify::result::Channel;
 use crate::report::drawing;
-use plotters::coord::Shift;
+use crate::report::plot::{self, Area, Chart, legend, mesh, range};
 use plotters::prelude::*;
 
-const SIZE: (u32, u32) = (960, 420);
+const HEIGHT: u32 = 420;
 /// Points drawn of a signal; a screen shows no more.
 const POINTS: usize = 3000;
 /// Blue and orange that differ in lightness too.
@@ -16,16 +16,11 @@ const PREDICTED: RGBColor = RGBColor(230, 140, 0);
 /// An SVG of one channel: the ten seconds around the border between training and validation above, all of the residual
 /// below.
 pub fn channel(channel: &Channel) -> anyhow::Result<String> {
-    let mut text = String::new();
-    {
-        let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        root.fill(&WHITE).map_err(drawing)?;
-        let (above, below) = root.split_vertically(SIZE.1 * 6 / 10);
+    plot::svg(HEIGHT, |root| {
+        let (above, below) = root.split_vertically(HEIGHT * 6 / 10);
         signals(&above, channel)?;
-        residual(&below, channel)?;
-        root.present().map_err(drawing)?;
-    }
-    Ok(text)
+        residual(&below, channel)
+    })
 }
 
 /// Samples joined end to end, in the order of flight: seconds of data, whatever was left out between.
@@ -45,13 +40,7 @@ fn joined(channel: &Channel) -> (Vec<[f64; 3]>, f64) {
     (out, border)
 }
 
-fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
-    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-    let margin = 0.05 * (high - low).max(1e-9);
-    low - margin..high + margin
-}
-
-fn signals(area: &DrawingArea<SVGBackend, Shift>, channel: &Channel) -> anyhow::Result<()> {
+fn signals(area: &Area, channel: &Channel) -> anyhow::Result<()> {
     let (all, border) = joined(channel);
     let shown: Vec<[f64; 3]> = all.into_iter().filter(|p| (p[0] - border).abs() <= 5.0).collect();
     // Room for the legend.
@@ -63,7 +52,7 @@ fn signals(area: &DrawingArea<SVGBackend, Shift>, channel: &Channel) -> anyhow::
         .y_label_area_size(64)
         .build_cartesian_2d(border - 5.0..border + 5.0, y.start..y.end + 0.35 * (y.end - y.start))
         .map_err(drawing)?;
-    mesh(&mut chart, "", channel.unit)?;
+    mesh(&mut chart, "", channel.unit, [10, 6])?;
     for (k, name, colour, width) in [(1, "measured", MEASURED, 2), (2, "predicted", PREDICTED, 1)] {
         let step = shown.len().div_ceil(POINTS).max(1);
         chart
@@ -72,17 +61,11 @@ fn signals(area: &DrawingArea<SVGBackend, Shift>, channel: &Channel) -> anyhow::
             .label(name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], colour.stroke_width(3)));
     }
-    let legend = &mut chart.configure_series_labels();
-    legend
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.8))
-        .label_font(("sans-serif", 14))
-        .draw()
-        .map_err(drawing)?;
+    legend(&mut chart, SeriesLabelPosition::UpperRight)?;
     divide(&mut chart, border)
 }
 
-fn residual(area: &DrawingArea<SVGBackend, Shift>, channel: &Channel) -> anyhow::Result<()> {
+fn residual(area: &Area, channel: &Channel) -> anyhow::Result<()> {
     let (all, border) = joined(channel);
     let step = all.len().div_ceil(POINTS).max(1);
     // Of each step the largest, so that nothing is hidden.
@@ -100,28 +83,9 @@ fn residual(area: &DrawingArea<SVGBackend, Shift>, channel: &Channel) -> anyhow:
         .y_label_area_size(64)
         .build_cartesian_2d(0.0..end, range(points.iter().map(|p| p.1)))
         .map_err(drawing)?;
-    mesh(&mut chart, "usable flight, s", &format!("residual, {}", channel.unit))?;
+    mesh(&mut chart, "usable flight, s", &format!("residual, {}", channel.unit), [10, 6])?;
     chart.draw_series(LineSeries::new(points, BLACK.mix(0.7))).map_err(drawing)?;
     divide(&mut chart, border)
-}
-
-type Chart<'a, 'b> = ChartContext<
-    'a,
-    SVGBackend<'b>,
-    Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
->;
-
-fn mesh(chart: &mut Chart, x: &str, y: &str) -> anyhow::Result<()> {
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.08))
-        .label_style(("sans-serif", 14))
-        .x_desc(x)
-        .y_desc(y)
-        .y_labels(6)
-        .draw()
-        .map_err(drawing)
 }
 
 /// The border between training and validation.

@@ -1,0 +1,73 @@
+//! Errors of the open loop.
+
+use super::{AFTER, BEFORE};
+use crate::diagnose::finding::Ahead;
+use crate::diagnose::horizon::Horizon;
+use crate::report::drawing;
+use crate::report::plot::{self, Area, TEXT, legend};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+type Of = fn(&Horizon) -> f64;
+
+/// Bars before and after, one panel a quantity.
+pub fn draw(ahead: &[Ahead]) -> anyhow::Result<String> {
+    let panels: [(&str, Of); 3] = [
+        ("velocity, m/s off", |h| h.velocity_m_s),
+        ("position, m off", |h| h.position_m),
+        ("attitude, deg off", |h| h.attitude_deg),
+    ];
+    plot::svg(300, |root| {
+        for (i, (area, (name, of))) in root.split_evenly((1, panels.len())).iter().zip(panels).enumerate() {
+            panel(area, name, of, ahead, i == 0)?;
+        }
+        Ok(())
+    })
+}
+
+fn panel(area: &Area, name: &str, of: Of, ahead: &[Ahead], first: bool) -> anyhow::Result<()> {
+    let top = ahead.iter().flat_map(|a| [of(&a.before), of(&a.after)]).fold(1e-9, f64::max);
+    let mut chart = ChartBuilder::on(area)
+        .caption(name, ("sans-serif", 16))
+        .margin(6)
+        .x_label_area_size(42)
+        .y_label_area_size(52)
+        .build_cartesian_2d(-0.5..ahead.len() as f64 - 0.5, 0.0..1.35 * top)
+        .map_err(drawing)?;
+    let when = |x: &f64| ahead.get(x.round() as usize).map_or(String::new(), |a| format!("{} s", a.before.after_s));
+    chart
+        .configure_mesh()
+        .disable_x_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.08))
+        .label_style(("sans-serif", TEXT))
+        .x_labels(0)
+        .y_labels(5)
+        .x_desc("left alone for")
+        .draw()
+        .map_err(drawing)?;
+    for (colour, side, name, of_side) in
+        [(BEFORE, -0.36, "before", (|a| &a.before) as fn(&Ahead) -> &Horizon), (AFTER, 0.04, "after", |a| &a.after)]
+    {
+        let bar = |(i, a): (usize, &Ahead)| {
+            let from = i as f64 + side;
+            Rectangle::new([(from, 0.0), (from + 0.32, of(of_side(a)))], colour.filled())
+        };
+        let drawn = chart.draw_series(ahead.iter().enumerate().map(bar)).map_err(drawing)?;
+        if first {
+            drawn.label(name).legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 16, y + 5)], colour.filled()));
+        }
+    }
+    let font = ("sans-serif", TEXT).into_font().color(&BLACK).pos(Pos::new(HPos::Center, VPos::Top));
+    for i in 0..ahead.len() {
+        let (x, y) = chart.backend_coord(&(i as f64, 0.0));
+        area_text(area, &when(&(i as f64)), (x, y + 6), &font)?;
+    }
+    if first { legend(&mut chart, SeriesLabelPosition::UpperLeft) } else { Ok(()) }
+}
+
+/// Text at a place of the whole figure.
+fn area_text(area: &Area, text: &str, at: (i32, i32), font: &TextStyle) -> anyhow::Result<()> {
+    let (x, y) = area.get_pixel_range();
+    area.draw_text(text, font, (at.0 - x.start, at.1 - y.start)).map_err(drawing)
+}
