@@ -81,13 +81,16 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let usable_s = logs.iter().map(|q| crate::flight::spans::length(&q.usable)).sum();
     let problem = problem(logs, vehicle);
     let mut selection = select::select(&problem, watch);
-    settle_chance(&problem, &mut selection);
+    let lost = settle_chance(&problem, &mut selection);
     watch("judging", 0.85);
     let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
     let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
     let judge = Judge::new(&problem, &selection);
     let mut findings: Vec<Finding> =
         selection.added.iter().map(|a| judge.judge(a)).filter(|j| j.material).map(|j| j.finding).collect();
+    if let (Some(lost), Some(finding)) = (lost, findings.iter_mut().find(|f| f.effect == "command_dropout")) {
+        finding.counted(&lost);
+    }
     findings.extend(biases(&judge));
     let force_structure = structure.iter().filter(|s| s.channel.starts_with("specific force")).map(|s| s.structure_rms);
     findings.extend(random::gusts(&problem, &selection, force_structure.fold(0.0, f64::max)));
@@ -147,9 +150,9 @@ fn rank(finding: &Finding) -> f64 {
     finding.impact + if finding.status == Status::Suspected { 0.0 } else { 1e6 }
 }
 
-/// Lost commands and a short delay have the same mean: the variance decides.
-fn settle_chance(problem: &Problem, selection: &mut Selection) {
-    let Some(dropout) = effects::card("command_dropout") else { return };
+/// Lost commands and a short delay have the same mean: what single stick movements leave decides.
+fn settle_chance(problem: &Problem, selection: &mut Selection) -> Option<random::Lost> {
+    let dropout = effects::card("command_dropout")?;
     let lost = random::lost_commands(problem, selection);
     let are_lost = random::are_lost(&lost, dropout);
     let at = |card: &effects::Card| model::span(card).start;
@@ -171,7 +174,7 @@ fn settle_chance(problem: &Problem, selection: &mut Selection) {
     } else if let Some(i) = selection.added.iter().position(|a| a.card.id == dropout.id) {
         // Its mean is there, its variance is not: the rival that has the same mean.
         let other = selection.added[i].ties.first().copied().or(effects::card("rate_delay"));
-        let Some(other) = other.filter(|o| selection.added.iter().all(|a| a.card.id != o.id)) else { return };
+        let other = other.filter(|o| selection.added.iter().all(|a| a.card.id != o.id))?;
         x[at(other)] = x[at(dropout)] * CONTROL_S;
         x[at(dropout)] = 0.0;
         free.retain(|k| *k != at(dropout));
@@ -179,9 +182,10 @@ fn settle_chance(problem: &Problem, selection: &mut Selection) {
         selection.added[i] = Added { card: other, ties: Vec::new() };
     } else {
         selection.added.iter_mut().for_each(|a| a.ties.retain(|c| c.id != dropout.id));
-        return;
+        return None;
     }
     selection.point = fit::fit(problem, &selection.whitener, &x, &free);
+    are_lost.then_some(lost)
 }
 
 /// Constant errors of the IMU, which every fit allows for.

@@ -175,3 +175,13 @@ impl Diagnosis {
         }
     }
 }
+
+impl Finding {
+    /// Lost commands, as counted.
+    pub(super) fn counted(&mut self, lost: &super::random::Lost) {
+        let [low, high] = lost.interval;
+        self.parameters.insert("probability".into(), Value { value: lost.share, low, high, unit: "1".into() });
+        self.stretches = lost.whole as f64;
+        (self.status, self.why, self.members) = (Status::Named, None, vec![self.effect]);
+    }
+}

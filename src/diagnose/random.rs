@@ -15,72 +15,71 @@ const LEAST_GUST: f64 = 0.08;
 /// Lags between which the memory of gusts is looked for, in bins.
 const LAGS: [usize; 2] = [6, 18];
 
-/// What the variance of the rates says about lost commands: the share that is lost, and the stretches that agree.
+/// What large stick movements say about lost commands: of each, how much of the error is there that its loss would leave.
 #[derive(Clone, Copy, Debug)]
 pub struct Lost {
+    /// Share of the commands that is lost, with its 95 % interval.
     pub share: f64,
-    pub stretches: f64,
+    pub interval: [f64; 2],
+    /// Movements whose whole error is there, and those with about half of it: a loss is all or nothing.
+    pub whole: usize,
+    pub half: usize,
 }
 
-/// The variance of the rate residuals, against what single lost commands would add to it.
+/// A movement is looked at where its loss would show beyond so many standard deviations of the noise.
+const CLEAR: f64 = 12.0;
+
+/// Holds the rate residuals against the error that each lost command would leave: the change of the command, for one period, behind the lag.
 pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
-    let mut blocks = vec![[0.0; 2]; problem.blocks];
-    let point = &selection.point;
-    for axis in 0..3 {
-        let (rows, residual) = (&problem.rows[RATE + axis], &point.residual[RATE + axis]);
-        if rows.len() < 100 {
-            continue;
-        }
-        let noise = robust_sd(residual).powi(2);
-        let energy = energy(problem, &point.x, axis);
-        let expected: Vec<f64> = rows.iter().map(|row| energy[row.flight as usize][row.index as usize]).collect();
-        let middle = mean(&expected);
-        for (i, row) in rows.iter().enumerate() {
-            // Weights of the best estimate for a share of a percent or so.
-            let weight = 1.0 / (noise + 0.02 * expected[i]).powi(2);
-            let b = &mut blocks[row.block as usize];
-            b[0] += weight * (expected[i] - middle).max(0.0) * (residual[i].powi(2) - noise);
-            b[1] += weight * (expected[i] - middle).max(0.0) * expected[i];
-        }
-    }
-    let (top, bottom): (f64, f64) = (blocks.iter().map(|b| b[0]).sum(), blocks.iter().map(|b| b[1]).sum());
-    let slope = top / bottom.max(1e-300);
-    let squares: f64 = blocks.iter().map(|b| b[0] * b[0]).sum();
-    let share = if slope > 0.0 { 0.5 - (0.25 - slope.min(0.24)).sqrt() } else { 0.0 };
-    Lost { share, stretches: if top > 0.0 { top * top / squares.max(1e-300) } else { 0.0 } }
-}
-
-/// Sum over the commands of the squared error that losing each would leave in each bin, (rad/s)2.
-fn energy(problem: &Problem, x: &[f64], axis: usize) -> Vec<Vec<f64>> {
+    let x = &selection.point.x;
     let p = problem.model.parameters(x);
     let late = crate::dynamics::extended::lateness(&p).rates;
-    let tau = x[super::model::TAU.start + axis];
-    let one = |record: &super::record::Record| {
-        let mut out = vec![0.0; record.bins.len()];
-        let middles: Vec<f64> = record.bins.iter().map(|b| 0.5 * (record.time[b[0]] + record.time[b[1] - 1])).collect();
-        for pair in record.sent.windows(2) {
-            let (before, now) = (pair[0], pair[1]);
-            let change = (now.1[axis] - before.1[axis]) * p.max_rate[axis];
-            if change.abs() < 1e-3 {
-                continue;
-            }
-            let (begin, held) = (now.0 + late, now.0 - before.0);
-            let first = middles.partition_point(|t| *t < begin);
-            for (bin, t) in middles.iter().enumerate().skip(first).take_while(|(_, t)| **t < begin + held + 5.0 * tau) {
-                let since = t - begin;
+    let (mut whole, mut half, mut kept) = (0usize, 0usize, 0usize);
+    for axis in 0..3 {
+        let (rows, residual) = (&problem.rows[RATE + axis], &selection.point.residual[RATE + axis]);
+        let noise = robust_sd(residual);
+        let tau = x[super::model::TAU.start + axis];
+        for (f, record) in problem.records.iter().enumerate() {
+            let mut by_bin = vec![f64::NAN; record.bins.len()];
+            let own = rows.iter().zip(residual).filter(|(row, _)| row.flight as usize == f);
+            own.for_each(|(row, r)| by_bin[row.index as usize] = *r);
+            let middles: Vec<f64> =
+                record.bins.iter().map(|b| 0.5 * (record.time[b[0]] + record.time[b[1] - 1])).collect();
+            for pair in record.sent.windows(2) {
+                let change = (pair[1].1[axis] - pair[0].1[axis]) * p.max_rate[axis];
+                if change.abs() < CLEAR * noise {
+                    continue;
+                }
+                let (begin, held) = (pair[1].0 + late, pair[1].0 - pair[0].0);
                 let rise = |t: f64| if t > 0.0 { 1.0 - (-t / tau).exp() } else { 0.0 };
-                out[bin] += (change * (rise(since) - rise(since - held))).powi(2);
+                let first = middles.partition_point(|t| *t < begin);
+                let (mut along, mut square) = (0.0, 0.0);
+                for bin in first..middles.len().min(first + 3) {
+                    let since = middles[bin] - begin;
+                    let shape = change * (rise(since) - rise(since - held));
+                    along -= shape * by_bin[bin];
+                    square += shape * shape;
+                }
+                if square < (CLEAR * noise).powi(2) || !along.is_finite() {
+                    continue;
+                }
+                match along / square {
+                    a if (0.7..1.4).contains(&a) => whole += 1,
+                    a if (0.3..0.7).contains(&a) => half += 1,
+                    _ => kept += 1,
+                }
             }
         }
-        out
-    };
-    problem.records.iter().map(one).collect()
+    }
+    let n = (whole + half + kept).max(1) as f64;
+    let share = (whole + half) as f64 / n;
+    let spread = 1.96 * (share * (1.0 - share) / n).sqrt();
+    Lost { share, interval: [share - spread, share + spread], whole, half }
 }
 
-/// Whether the rates are noisier after stick movements as they are where commands get lost, and by a share that matters. Lost commands also delay, on average;
-/// a delay that is much longer is one of its own.
+/// Whether commands get lost, by a share that matters.
 pub fn are_lost(lost: &Lost, card: &Card) -> bool {
-    lost.stretches >= REPLICATED && lost.share > 0.5 * card.parameters[0].typical[0]
+    lost.whole >= 12 && lost.whole > 3 * lost.half && lost.share > 0.5 * card.parameters[0].typical[0]
 }
 
 /// Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both horizontal axes.
