@@ -10,7 +10,7 @@ pub const BLUE: RGBColor = RGBColor(0, 114, 178);
 pub const ORANGE: RGBColor = RGBColor(213, 94, 0);
 /// Of a figure that fills the width of a page, and of the text in it.
 pub const WIDTH: u32 = 960;
-pub const TEXT: i32 = 14;
+pub const TEXT: i32 = 16;
 
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// A chart over two axes.
@@ -85,6 +85,17 @@ where
     let drawn = chart.draw_series(LineSeries::new(points, style)).map_err(drawing)?;
     if let Some(name) = name {
         drawn.label(name).legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
+    }
+    Ok(())
+}
+
+/// Names of lines side by side from `x` on, 12 pixels below the upper edge.
+pub fn key(area: &Area, x: i32, lines: &[(&str, ShapeStyle)]) -> anyhow::Result<()> {
+    let mut x = x;
+    for (name, style) in lines {
+        area.draw(&PathElement::new([(x, 12), (x + 28, 12)], *style)).map_err(drawing)?;
+        area.draw(&Text::new(name.to_string(), (x + 36, 4), ("sans-serif", TEXT))).map_err(drawing)?;
+        x += 70 + 8 * name.len() as i32;
     }
     Ok(())
 }

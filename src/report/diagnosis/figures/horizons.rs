@@ -28,7 +28,7 @@ pub fn draw(ahead: &[Ahead]) -> anyhow::Result<String> {
 fn panel(area: &Area, name: &str, of: Of, ahead: &[Ahead], first: bool) -> anyhow::Result<()> {
     let top = ahead.iter().flat_map(|a| [of(&a.before), of(&a.after)]).fold(1e-9, f64::max);
     let mut chart = ChartBuilder::on(area)
-        .caption(name, ("sans-serif", 16))
+        .caption(name, ("sans-serif", 18))
         .margin(6)
         .x_label_area_size(42)
         .y_label_area_size(52)

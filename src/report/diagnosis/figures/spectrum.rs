@@ -30,6 +30,7 @@ pub fn draw(channel: &Channel, spectra: &Spectra) -> anyhow::Result<String> {
             .label_style(("sans-serif", TEXT))
             .x_desc("frequency, Hz")
             .y_desc(format!("power density, {squared}/Hz"))
+            .x_label_formatter(&|x| format!("{}", (x * 1e3).round() / 1e3))
             .y_label_formatter(&|y| format!("{y:.0e}"))
             .y_labels(6)
             .draw()
