@@ -9,16 +9,13 @@ use crate::report::plot::{self, Area, TEXT, line, mesh, range};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-const KEY: u32 = 24;
 const ABOVE: u32 = 270;
 const BELOW: u32 = 190;
 
 /// The worst stretches side by side, the whole flight below.
 pub fn draw(channel: &Channel) -> anyhow::Result<String> {
-    plot::svg(KEY + ABOVE + BELOW, |root| {
-        let (names, rest) = root.split_vertically(KEY);
-        plot::key(&names, 72, &series().map(|(_, style, name)| (name, style)))?;
-        let (above, below) = rest.split_vertically(ABOVE);
+    plot::keyed(ABOVE + BELOW, &series().map(|(_, style, name)| (name, style)), |root| {
+        let (above, below) = root.split_vertically(ABOVE);
         for (i, (area, window)) in
             above.split_evenly((1, channel.windows.len())).iter().zip(&channel.windows).enumerate()
         {
@@ -42,7 +39,7 @@ fn stretch(area: &Area, channel: &Channel, window: &Window, i: usize) -> anyhow:
     let label = if i == 0 { format!("{}, {}", channel.name, unit(channel.unit)) } else { String::new() };
     mesh(&mut chart, "time, s", &label, [4, 6])?;
     for (k, style, _) in series() {
-        line(&mut chart, points.iter().map(|p| (p[0], p[k])), style, None)?;
+        line(&mut chart, points.iter().map(|p| (p[0], p[k])), style)?;
     }
     Ok(())
 }
@@ -78,7 +75,7 @@ fn whole(area: &Area, channel: &Channel) -> anyhow::Result<()> {
     mesh(&mut chart, "time, s", &format!("error, {}", unit(channel.unit)), [12, 5])?;
     for (k, colour) in [(1, BEFORE), (2, AFTER)] {
         for piece in &errors.pieces {
-            line(&mut chart, piece.iter().map(|p| (p[0], p[k])), colour.stroke_width(2), None)?;
+            line(&mut chart, piece.iter().map(|p| (p[0], p[k])), colour.stroke_width(2))?;
         }
     }
     Ok(())
