@@ -13,7 +13,8 @@ const HALF: f64 = 1.96;
 
 /// Means with error bars, before and after.
 pub fn draw(channel: &Channel, profile: &Profile) -> anyhow::Result<String> {
-    let sides: [(fn(&Level) -> [f64; 2], RGBColor); 2] = [(|l| l.before, BEFORE), (|l| l.after, AFTER)];
+    type Of = fn(&Level) -> [f64; 2];
+    let sides: [(Of, RGBColor); 2] = [(|l| l.before, BEFORE), (|l| l.after, AFTER)];
     plot::keyed(320, &super::lines(), |root| {
         let x = range(profile.levels.iter().map(|l| l.signal));
         let ends = |[mean, error]: [f64; 2]| [mean - HALF * error, mean + HALF * error];
