@@ -10,6 +10,7 @@ use super::page::{self, digits, unit};
 use crate::diagnose::Diagnosed;
 use crate::diagnose::finding::Diagnosis;
 use maud::{Markup, PreEscaped, html};
+use std::path::Path;
 
 const STYLE: &str = ".verdict{font-size:1.25em}.finding{border-left:4px solid #0072b2;padding-left:1em;margin:1.5em 0}
 .finding.suspected{border-color:#999}.finding h3{margin:0}.finding p{margin:.4em 0}.status{font-weight:normal;color:#555}
@@ -22,7 +23,7 @@ pub fn page(diagnosed: &Diagnosed, figures: &Figures) -> String {
         h1 { "What the simulation of " (d.base) " gets wrong" }
         p class="verdict" { (sentence(&d.headline())) }
         p class="why" {
-            (format!("Diagnosed by racer {} from {}.", env!("CARGO_PKG_VERSION"), d.logs.join(", ")))
+            (format!("Diagnosed by racer {} from {}.", env!("CARGO_PKG_VERSION"), logs(d)))
             " Before means the compact model, fitted to these flights together with the constant errors of the IMU; after, the same with what was found."
         }
         (findings::all(d))
@@ -33,10 +34,10 @@ pub fn page(diagnosed: &Diagnosed, figures: &Figures) -> String {
         @if !figures.channels.is_empty() { h2 { "Channels" } }
         @for shown in &figures.channels {
             @let c = &shown.channel;
-            h3 { (sentence(c.name)) }
+            h3 { (capital(c.name)) }
             p {
                 "Error " (digits(c.before, c.before, 3)) " " (unit(c.unit)) " before, " (digits(c.after, c.before, 3)) " after, root mean square; "
-                (digits(c.noise, c.before, 3)) " of it cannot be predicted."
+                "its noise is about " (digits(c.noise, c.before, 3)) "."
             }
             @for figure in &shown.figures { (drawn(figure)) }
         }
@@ -60,10 +61,20 @@ fn ahead(d: &Diagnosis, figures: &Figures) -> Markup {
     }
 }
 
-/// With a capital and a full stop, where it is one.
-fn sentence(text: &str) -> String {
+/// With a capital.
+fn capital(text: &str) -> String {
     let mut letters = text.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-    let stop = if text.contains(' ') && text.len() > 40 && !text.ends_with('.') { "." } else { "" };
-    format!("{first}{}{stop}", letters.as_str())
+    first + letters.as_str()
+}
+
+/// With a capital and a full stop.
+fn sentence(text: &str) -> String {
+    capital(text) + if text.ends_with('.') { "" } else { "." }
+}
+
+/// Logs by the names of their files.
+fn logs(d: &Diagnosis) -> String {
+    let name = |path: &String| Path::new(path).file_name().map_or(path.clone(), |n| n.to_string_lossy().into_owned());
+    d.logs.iter().map(name).collect::<Vec<_>>().join(", ")
 }

@@ -10,7 +10,7 @@ pub const BLUE: RGBColor = RGBColor(0, 114, 178);
 pub const ORANGE: RGBColor = RGBColor(213, 94, 0);
 /// Of a figure that fills the width of a page, and of the text in it.
 pub const WIDTH: u32 = 960;
-pub const TEXT: i32 = 14;
+pub const TEXT: i32 = 16;
 
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// A chart over two axes.
@@ -71,20 +71,35 @@ where
         .map_err(drawing)
 }
 
-/// A line; it is in the legend where it has a name.
+/// A line.
 pub fn line<X, Y>(
     chart: &mut On<X, Y>,
     points: impl IntoIterator<Item = (f64, f64)>,
     style: ShapeStyle,
-    name: Option<&str>,
 ) -> anyhow::Result<()>
 where
     X: Ranged<ValueType = f64>,
     Y: Ranged<ValueType = f64>,
 {
-    let drawn = chart.draw_series(LineSeries::new(points, style)).map_err(drawing)?;
-    if let Some(name) = name {
-        drawn.label(name).legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
-    }
+    chart.draw_series(LineSeries::new(points, style)).map_err(drawing)?;
     Ok(())
+}
+
+/// [`svg`] with the names of all lines above what `draw` draws, where they hide nothing.
+pub fn keyed(
+    height: u32,
+    lines: &[(&str, ShapeStyle)],
+    draw: impl FnOnce(&Area) -> anyhow::Result<()>,
+) -> anyhow::Result<String> {
+    const KEY: u32 = 24;
+    svg(height + KEY, |root| {
+        let (names, rest) = root.split_vertically(KEY);
+        let mut x = 72;
+        for (name, style) in lines {
+            names.draw(&PathElement::new([(x, 12), (x + 28, 12)], *style)).map_err(drawing)?;
+            names.draw(&Text::new(name.to_string(), (x + 36, 4), ("sans-serif", TEXT))).map_err(drawing)?;
+            x += 70 + 8 * name.len() as i32;
+        }
+        draw(&rest)
+    })
 }

@@ -9,11 +9,16 @@ use crate::diagnose::Diagnosed;
 use crate::diagnose::figures::{Channel, channels};
 use crate::diagnose::finding::Ahead;
 use crate::report::plot::{BLUE, ORANGE};
-use plotters::style::RGBColor;
+use plotters::style::{Color, RGBColor, ShapeStyle};
 
 /// The compact model, and the same with what was found, in every figure.
 const BEFORE: RGBColor = ORANGE;
 const AFTER: RGBColor = BLUE;
+
+/// Both as the lines of a figure.
+fn lines() -> [(&'static str, ShapeStyle); 2] {
+    [("before", BEFORE.stroke_width(2)), ("after", AFTER.stroke_width(2))]
+}
 
 /// A figure that stands alone.
 pub struct Figure {

@@ -1,6 +1,6 @@
 //! What was found, the most important first.
 
-use super::sentence;
+use super::{capital, sentence};
 use crate::diagnose::finding::{Diagnosis, Finding, Status, Value};
 use crate::effects;
 use crate::report::page::{digits, unit};
@@ -20,7 +20,7 @@ fn one(rank: usize, f: &Finding) -> Markup {
     let suspected = f.status == Status::Suspected;
     html! {
         div class=(if suspected { "finding suspected" } else { "finding" }) id=(f.effect) {
-            h3 { (rank) ". " (sentence(f.name)) " " code { (f.effect) } " " span class="status" { (status(f)) } }
+            h3 { (rank) ". " (capital(f.name)) " " code { (f.effect) } " " span class="status" { (status(f)) } }
             p { (sentence(f.sentence)) }
             p {
                 @for (i, (name, value)) in f.parameters.iter().enumerate() {
@@ -81,7 +81,7 @@ fn rivals(f: &Finding) -> Markup {
         } @else if f.status == Status::Suspected {
             p { "To be surer, fly " (f.manoeuvre) "." @if !f.rivals.is_empty() { " It looks like " (list(&f.rivals)) "." } }
         } @else if !f.rivals.is_empty() {
-            p class="why" { "Looks like " (list(&f.rivals)) ", which explain these flights less well. What tells them apart: " (f.manoeuvre) "." }
+            p class="why" { "It could be mistaken for " (list(&f.rivals)) ". What tells them apart: " (f.manoeuvre) "." }
         }
     }
 }

@@ -15,7 +15,7 @@ pub fn gain(d: &Diagnosis) -> Markup {
                 tr {
                     td { (name) ", " (unit(g.unit)) }
                     td { (digits(g.before, g.before, 3)) } td { (digits(g.after, g.before, 3)) }
-                    td { (digits(100.0 * (g.after / g.before - 1.0), 10.0, 2)) " %" }
+                    td { (percent(g.after / g.before - 1.0)) }
                     td { (digits(g.r2_before, 1.0, 5)) } td { (digits(g.r2_after, 1.0, 5)) }
                 }
             }
@@ -24,6 +24,12 @@ pub fn gain(d: &Diagnosis) -> Markup {
             p { (format!("{:.0} % of what a better model could gain on that flight was gained.", 100.0 * captured)) }
         }
     }
+}
+
+/// A change; no change has no sign.
+fn percent(change: f64) -> String {
+    let whole = (100.0 * change).round();
+    format!("{} %", digits(if whole == 0.0 { 0.0 } else { whole }, 10.0, 2))
 }
 
 /// Open-loop errors.

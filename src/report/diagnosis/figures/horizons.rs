@@ -4,7 +4,7 @@ use super::{AFTER, BEFORE};
 use crate::diagnose::finding::Ahead;
 use crate::diagnose::horizon::Horizon;
 use crate::report::drawing;
-use crate::report::plot::{self, Area, TEXT, legend};
+use crate::report::plot::{self, Area, TEXT};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -17,24 +17,23 @@ pub fn draw(ahead: &[Ahead]) -> anyhow::Result<String> {
         ("position, m off", |h| h.position_m),
         ("attitude, deg off", |h| h.attitude_deg),
     ];
-    plot::svg(300, |root| {
-        for (i, (area, (name, of))) in root.split_evenly((1, panels.len())).iter().zip(panels).enumerate() {
-            panel(area, name, of, ahead, i == 0)?;
+    plot::keyed(280, &super::lines().map(|(name, style)| (name, style.stroke_width(10))), |root| {
+        for (area, (name, of)) in root.split_evenly((1, panels.len())).iter().zip(panels) {
+            panel(area, name, of, ahead)?;
         }
         Ok(())
     })
 }
 
-fn panel(area: &Area, name: &str, of: Of, ahead: &[Ahead], first: bool) -> anyhow::Result<()> {
+fn panel(area: &Area, name: &str, of: Of, ahead: &[Ahead]) -> anyhow::Result<()> {
     let top = ahead.iter().flat_map(|a| [of(&a.before), of(&a.after)]).fold(1e-9, f64::max);
     let mut chart = ChartBuilder::on(area)
-        .caption(name, ("sans-serif", 16))
+        .caption(name, ("sans-serif", 18))
         .margin(6)
         .x_label_area_size(42)
         .y_label_area_size(52)
-        .build_cartesian_2d(-0.5..ahead.len() as f64 - 0.5, 0.0..1.35 * top)
+        .build_cartesian_2d(-0.5..ahead.len() as f64 - 0.5, 0.0..1.1 * top)
         .map_err(drawing)?;
-    let when = |x: &f64| ahead.get(x.round() as usize).map_or(String::new(), |a| format!("{} s", a.before.after_s));
     chart
         .configure_mesh()
         .disable_x_mesh()
@@ -46,24 +45,21 @@ fn panel(area: &Area, name: &str, of: Of, ahead: &[Ahead], first: bool) -> anyho
         .x_desc("left alone for")
         .draw()
         .map_err(drawing)?;
-    for (colour, side, name, of_side) in
-        [(BEFORE, -0.36, "before", (|a| &a.before) as fn(&Ahead) -> &Horizon), (AFTER, 0.04, "after", |a| &a.after)]
-    {
+    type Side = fn(&Ahead) -> &Horizon;
+    let sides: [(RGBColor, f64, Side); 2] = [(BEFORE, -0.36, |a| &a.before), (AFTER, 0.04, |a| &a.after)];
+    for (colour, side, of_side) in sides {
         let bar = |(i, a): (usize, &Ahead)| {
             let from = i as f64 + side;
             Rectangle::new([(from, 0.0), (from + 0.32, of(of_side(a)))], colour.filled())
         };
-        let drawn = chart.draw_series(ahead.iter().enumerate().map(bar)).map_err(drawing)?;
-        if first {
-            drawn.label(name).legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 16, y + 5)], colour.filled()));
-        }
+        chart.draw_series(ahead.iter().enumerate().map(bar)).map_err(drawing)?;
     }
     let font = ("sans-serif", TEXT).into_font().color(&BLACK).pos(Pos::new(HPos::Center, VPos::Top));
-    for i in 0..ahead.len() {
+    for (i, a) in ahead.iter().enumerate() {
         let (x, y) = chart.backend_coord(&(i as f64, 0.0));
-        area_text(area, &when(&(i as f64)), (x, y + 6), &font)?;
+        area_text(area, &format!("{} s", a.before.after_s), (x, y + 6), &font)?;
     }
-    if first { legend(&mut chart, SeriesLabelPosition::UpperLeft) } else { Ok(()) }
+    Ok(())
 }
 
 /// Text at a place of the whole figure.

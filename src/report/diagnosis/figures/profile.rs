@@ -5,7 +5,7 @@ use crate::diagnose::figures::Channel;
 use crate::diagnose::figures::profile::{Level, Profile};
 use crate::report::drawing;
 use crate::report::page::unit;
-use crate::report::plot::{self, legend, line, mesh, range};
+use crate::report::plot::{self, line, mesh, range};
 use plotters::prelude::*;
 
 /// Half of a 95 % interval, in standard errors.
@@ -13,9 +13,9 @@ const HALF: f64 = 1.96;
 
 /// Means with error bars, before and after.
 pub fn draw(channel: &Channel, profile: &Profile) -> anyhow::Result<String> {
-    let sides: [(fn(&Level) -> [f64; 2], RGBColor, &str); 2] =
-        [(|l| l.before, BEFORE, "before"), (|l| l.after, AFTER, "after")];
-    plot::svg(320, |root| {
+    type Of = fn(&Level) -> [f64; 2];
+    let sides: [(Of, RGBColor); 2] = [(|l| l.before, BEFORE), (|l| l.after, AFTER)];
+    plot::keyed(320, &super::lines(), |root| {
         let x = range(profile.levels.iter().map(|l| l.signal));
         let ends = |[mean, error]: [f64; 2]| [mean - HALF * error, mean + HALF * error];
         let y = range(profile.levels.iter().flat_map(|l| [ends(l.before), ends(l.after)]).flatten().chain([0.0]));
@@ -25,14 +25,14 @@ pub fn draw(channel: &Channel, profile: &Profile) -> anyhow::Result<String> {
             .margin(8)
             .x_label_area_size(42)
             .y_label_area_size(70)
-            .build_cartesian_2d(x.clone(), y.start..y.end + 0.2 * (y.end - y.start))
+            .build_cartesian_2d(x.clone(), y)
             .map_err(drawing)?;
         let label = format!("{}, {}", profile.signal, unit(profile.unit));
         mesh(&mut chart, &label, &format!("mean error, {}", unit(channel.unit)), [10, 6])?;
-        line(&mut chart, [(x.start, 0.0), (x.end, 0.0)], BLACK.mix(0.5).stroke_width(1), None)?;
-        for ((of, colour, name), side) in sides.into_iter().zip([-apart, apart]) {
+        line(&mut chart, [(x.start, 0.0), (x.end, 0.0)], BLACK.mix(0.5).stroke_width(1))?;
+        for ((of, colour), side) in sides.into_iter().zip([-apart, apart]) {
             let points = || profile.levels.iter().map(|l| (l.signal + side, of(l)));
-            line(&mut chart, points().map(|(x, y)| (x, y[0])), colour.stroke_width(2), Some(name))?;
+            line(&mut chart, points().map(|(x, y)| (x, y[0])), colour.stroke_width(2))?;
             for (x, y) in points() {
                 let [low, high] = ends(y);
                 let bar = PathElement::new([(x, low), (x, high)], colour.stroke_width(3));
@@ -40,6 +40,6 @@ pub fn draw(channel: &Channel, profile: &Profile) -> anyhow::Result<String> {
                 chart.draw_series([Circle::new((x, y[0]), 4, colour.filled())]).map_err(drawing)?;
             }
         }
-        legend(&mut chart, SeriesLabelPosition::UpperRight)
+        Ok(())
     })
 }

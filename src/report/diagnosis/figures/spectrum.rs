@@ -5,12 +5,12 @@ use crate::diagnose::figures::Channel;
 use crate::diagnose::figures::spectrum::Spectra;
 use crate::report::drawing;
 use crate::report::page::unit;
-use crate::report::plot::{self, TEXT, legend, line};
+use crate::report::plot::{self, TEXT, line};
 use plotters::prelude::*;
 
 /// Power densities, both axes logarithmic.
 pub fn draw(channel: &Channel, spectra: &Spectra) -> anyhow::Result<String> {
-    plot::svg(320, |root| {
+    plot::keyed(320, &super::lines(), |root| {
         let both = || spectra.before.iter().chain(&spectra.after).copied().filter(|p| *p > 0.0);
         let (low, high) = (both().fold(f64::INFINITY, f64::min), both().fold(0.0, f64::max));
         let (low, high) = if high > 0.0 { (low / 2.0, high * 3.0) } else { (0.1, 1.0) };
@@ -30,14 +30,15 @@ pub fn draw(channel: &Channel, spectra: &Spectra) -> anyhow::Result<String> {
             .label_style(("sans-serif", TEXT))
             .x_desc("frequency, Hz")
             .y_desc(format!("power density, {squared}/Hz"))
+            .x_label_formatter(&|x| format!("{}", (x * 1e3).round() / 1e3))
             .y_label_formatter(&|y| format!("{y:.0e}"))
             .y_labels(6)
             .draw()
             .map_err(drawing)?;
-        for (power, colour, name) in [(&spectra.before, BEFORE, "before"), (&spectra.after, AFTER, "after")] {
+        for (power, colour) in [(&spectra.before, BEFORE), (&spectra.after, AFTER)] {
             let points = spectra.hz.iter().copied().zip(power.iter().copied()).filter(|p| p.1 > 0.0);
-            line(&mut chart, points, colour.stroke_width(2), Some(name))?;
+            line(&mut chart, points, colour.stroke_width(2))?;
         }
-        legend(&mut chart, SeriesLabelPosition::UpperRight)
+        Ok(())
     })
 }
