@@ -155,6 +155,9 @@ fn settle_chance(problem: &Problem, selection: &mut Selection) -> Option<random:
     let dropout = effects::card("command_dropout")?;
     let lost = random::lost_commands(problem, selection);
     let are_lost = random::are_lost(&lost, dropout);
+    if std::env::var("RACER_TRACE").is_ok() {
+        eprintln!("{lost:?}");
+    }
     let at = |card: &effects::Card| model::span(card).start;
     let mut x = selection.point.x.clone();
     let mut free = selection.point.free.clone();
@@ -169,8 +172,8 @@ fn settle_chance(problem: &Problem, selection: &mut Selection) -> Option<random:
             selection.added.retain(|other| other.card.id != a.card.id);
         }
         selection.added.push(Added { card: dropout, ties: Vec::new() });
+        // Counted, not fitted: its mean is a delay that the time constants take up.
         x[at(dropout)] = lost.share;
-        free.push(at(dropout));
     } else if let Some(i) = selection.added.iter().position(|a| a.card.id == dropout.id) {
         // Its mean is there, its variance is not: the rival that has the same mean.
         let other = selection.added[i].ties.first().copied().or(effects::card("rate_delay"));

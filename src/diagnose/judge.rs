@@ -68,6 +68,9 @@ impl<'a> Judge<'a> {
     /// themselves, beyond two standard deviations, less those that contradict; with how sure all together are.
     fn stretches(&self, card: &Card) -> Replicated {
         let own = self.places(card);
+        if own.is_empty() {
+            return Replicated::default();
+        }
         let n = self.point().free.len();
         let rest: Vec<usize> = (0..n).filter(|i| !own.contains(i)).collect();
         // The residual as it was without the effect.
@@ -115,7 +118,7 @@ impl<'a> Judge<'a> {
         let mut x = self.point().x.clone();
         let prior: Vec<f64> =
             rest.iter().map(|&i| self.problem.model.numbers[self.point().free[i]].trust.powi(-2)).collect();
-        if let Some(inner) = inverse(&Grams::pick(&self.grams.sum, &rest, &rest), &prior) {
+        if let Some(inner) = inverse(&Grams::pick(&self.grams.sum, &rest, &rest), &prior).filter(|_| !own.is_empty()) {
             let absorbed = inner * Grams::pick(&self.grams.sum, &rest, &own);
             for (a, &i) in rest.iter().enumerate() {
                 let k = self.point().free[i];

@@ -45,9 +45,12 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
             own.for_each(|(row, r)| by_bin[row.index as usize] = *r);
             let middles: Vec<f64> =
                 record.bins.iter().map(|b| 0.5 * (record.time[b[0]] + record.time[b[1] - 1])).collect();
-            for pair in record.sent.windows(2) {
+            for three in record.sent.windows(3) {
+                let pair = &three[1..];
                 let change = (pair[1].1[axis] - pair[0].1[axis]) * p.max_rate[axis];
-                if change.abs() < CLEAR * noise {
+                // What the loss of the command before would leave reaches into this one.
+                let earlier = (three[1].1[axis] - three[0].1[axis]) * p.max_rate[axis];
+                if change.abs() < CLEAR * noise || earlier.abs() > 0.25 * change.abs() {
                     continue;
                 }
                 let (begin, held) = (pair[1].0 + late, pair[1].0 - pair[0].0);
@@ -79,7 +82,7 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
 
 /// Whether commands get lost, by a share that matters.
 pub fn are_lost(lost: &Lost, card: &Card) -> bool {
-    lost.whole >= 12 && lost.whole > 3 * lost.half && lost.share > 0.5 * card.parameters[0].typical[0]
+    lost.whole >= 12 && lost.whole > 2 * lost.half && lost.share > 0.5 * card.parameters[0].typical[0]
 }
 
 /// Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both horizontal axes.

@@ -16,6 +16,8 @@ const SHORT_LIST: usize = 6;
 /// Least fall of the whitened squares, and least number of agreeing stretches, for a candidate to be added.
 pub const GAIN: f64 = 30.0;
 pub const EVIDENCE: f64 = 9.0;
+/// Fall of the whitened squares for which even a few stretches are enough to be looked at.
+const RARE: f64 = 100.0;
 /// Fall of the whitened squares for which even an effect of no size that matters is added.
 const NUISANCE: f64 = 400.0;
 /// Rivals that come so near the best by standard deviations of their difference are a tie.
@@ -326,7 +328,11 @@ fn try_best(
         let known = chosen.iter().any(|&i| found[i].0.card.id == card.id);
         let leader = chosen.first().map(|&i| found[i].0.card);
         let rival = leader.is_some_and(|l| l.rivals.contains(&card.id) || card.rivals.contains(&l.id));
-        if !known && gain > 0.5 * GAIN && evidence > 0.5 * EVIDENCE && (chosen.len() < SHORT_LIST || rival) {
+        if !known
+            && gain > 0.5 * GAIN
+            && (evidence > 0.5 * EVIDENCE || gain > RARE)
+            && (chosen.len() < SHORT_LIST || rival)
+        {
             chosen.push(j);
         }
     }
