@@ -166,7 +166,7 @@ fn randomised_parameters() {
     let rng = Philox::new(9);
     let draws: Vec<[f64; 9]> = (0..4000)
         .map(|i| {
-            let f = race.config.randomize.draw(&race.vehicle, &mut rng.sequence(Stream::Reset, i, 0));
+            let f = race.config.randomize.draw(&mut rng.sequence(Stream::Reset, i, 0));
             let [a, b, c, d] = f.time_constant;
             let [x, y, z] = f.max_rate;
             [a, b, c, d, x, y, z, f.thrust, f.drag]

@@ -1,6 +1,9 @@
 //! `racer diagnose`: what the simulation gets wrong, and why.
 
+mod worth;
+
 use super::{Outcome, columns, findings, tell};
+use crate::check::{BadInput, Invalid};
 use crate::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
 use crate::diagnose::{Diagnosed, diagnose};
 use crate::flight::quality::{Quality, check};
@@ -9,6 +12,7 @@ use crate::fsio::{self, Reserved};
 use crate::identify::{self, identify};
 use crate::report;
 use crate::report::diagnosis::Figures;
+use crate::run;
 use crate::vehicle::Vehicle;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
@@ -35,6 +39,15 @@ pub struct Args {
     /// New or empty folder for the figures, one SVG file each
     #[arg(long, value_name = "DIR")]
     svg: Option<PathBuf>,
+    /// Fly this policy with and without what was found: a run folder, a snapshot file, or `latest`
+    #[arg(long, value_name = "RUN|SNAPSHOT|latest")]
+    policy: Option<String>,
+    /// Train a policy in the base and one in the extended vehicle for so many minutes each, and fly both in the extended one
+    #[arg(long, value_name = "MINUTES")]
+    retrain: Option<f64>,
+    /// New folder for the policies of --retrain [default: retrained]
+    #[arg(long, value_name = "DIR", default_value = "retrained", requires = "retrain")]
+    retrain_out: PathBuf,
     /// Only say what these flights could show and tell apart, and what to fly next
     #[arg(long)]
     plan: bool,
@@ -67,6 +80,13 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let (json, extended, page) = (reserve(&args.json)?, reserve(&args.extend)?, reserve(&args.report)?);
     args.svg.as_deref().map(fsio::new_folder).transpose()?;
     let given = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
+    if let Some(minutes) = args.retrain {
+        Invalid::unless_positive("--retrain", minutes, "").map_err(|invalid| BadInput::at("command line", invalid))?;
+    }
+    if let Some(policy) = &args.policy {
+        run::find(policy)?;
+    }
+    let runs = args.retrain.map(|_| worth::folder(&args.retrain_out)).transpose()?;
     let bar = ProgressBar::new(100);
     bar.set_style(ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}")?);
     let mut logs: Vec<Quality> = Vec::new();
@@ -81,7 +101,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         logs.push(quality);
     }
     let damaged = logs.iter().any(|quality| quality.log.readable != Readable::Whole);
-    let vehicle = match given {
+    let base = match given {
         Some(vehicle) => vehicle,
         None => {
             let options = identify::Options {
@@ -94,7 +114,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
             identify(logs.clone(), &options, &mut |step, _| bar.set_message(format!("identifying: {step}"))).vehicle
         }
     };
-    let diagnosed = diagnose(logs, &vehicle, &mut |step, share| {
+    let diagnosed = diagnose(logs, &base, &mut |step, share| {
         bar.set_position((100.0 * share) as u64);
         bar.set_message(step.to_string());
     });
@@ -109,6 +129,12 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     if let Some(file) = extended {
         let written = file.write(toml::to_string(vehicle)?.as_bytes())?;
         tell(&format!("extended vehicle in {0}: racer train --vehicle {0}", written.display()));
+    }
+    if let Some(policy) = &args.policy {
+        super::print(&worth::present(policy, &base, vehicle)?)?;
+    }
+    if let (Some(minutes), Some(to)) = (args.retrain, &runs) {
+        super::print(&worth::retrain(to, minutes, &base, vehicle)?)?;
     }
     Ok(if args.fail_on_effect && diagnosis.verdict != Verdict::Clean {
         Outcome::Effect

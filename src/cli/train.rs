@@ -18,7 +18,7 @@ use crate::run::provenance::Provenance;
 use crate::run::{POLICY, Run, SNAPSHOTS, TENSORBOARD, tensorboard};
 use crate::snapshot::{About, Snapshot};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 /// Train a policy, evaluate every snapshot of it and keep the best
@@ -68,6 +68,21 @@ fn long_help() -> String {
 }
 
 impl Args {
+    /// Training in the vehicle of a file, into a new folder, with everything else as built in.
+    pub fn in_vehicle(vehicle: &Path, minutes: f64, out: &Path) -> Self {
+        Args {
+            config: DEFAULT.into(),
+            track: None,
+            vehicle: Some(vehicle.display().to_string()),
+            set: Vec::new(),
+            seed: None,
+            minutes: Some(minutes),
+            steps: None,
+            threads: None,
+            out: Some(out.into()),
+        }
+    }
+
     /// What the options change in the configuration, in the order of precedence.
     fn settings(&self) -> Result<Vec<Setting>, BadInput> {
         let mut settings = self.set.iter().map(|text| Setting::parse(text)).collect::<Result<Vec<_>, _>>()?;

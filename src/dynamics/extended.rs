@@ -232,10 +232,10 @@ impl<R: Real> Moment<R> {
     }
 }
 
-/// Time since the battery was full, from its open-circuit voltage, s.
+/// Time since the battery was full, from its open-circuit voltage, s; at most an hour, for batteries that hardly discharge.
 #[inline(always)]
 fn elapsed<R: Real>(p: &Parameters<R>, open: R) -> R {
-    (p.beyond.full_v - open) / (-p.voltage_rate).max(R::of(1e-6))
+    ((p.beyond.full_v - open) / (-p.voltage_rate).max(R::of(1e-6))).clamp(R::zero(), R::of(3600.0))
 }
 
 /// Specific force, body frame, m/s2.

@@ -63,24 +63,28 @@ pub enum Place {
 pub fn draw(race: &Race, rng: &mut Sequence, place: Place, factors: Option<Factors>) -> Start {
     let config = &race.config;
     let nominal = factors.is_some();
-    let factors = factors.unwrap_or_else(|| config.randomize.draw(&race.vehicle, rng));
+    let mut factors = factors.unwrap_or_else(|| config.randomize.draw(rng));
     let voltage = if nominal {
         race.vehicle.battery.full_v
     } else {
         race.vehicle.battery.at(rng.uniform(config.randomize.charge))
     };
-    let parameters = Parameters::new(&race.vehicle, &factors, race.dt);
     let pad = match place {
         Place::Pad => true,
         Place::Spline => false,
         Place::Mixed => rng.unit() < config.reset.pad_share,
     };
-    if pad {
+    let (state, target) = if pad {
         let yaw = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), race.start.heading_rad());
-        let state = at_rest(race.start.position(), yaw, [0.0, 0.0, 0.0, -1.0], voltage);
-        return Start { state, parameters, target: 0 };
+        (at_rest(race.start.position(), yaw, [0.0, 0.0, 0.0, -1.0], voltage), 0)
+    } else {
+        on_spline(race, rng, voltage)
+    };
+    if !nominal {
+        // Last, so that vehicles with effects and without are given the same start.
+        factors.effects = race.vehicle.effects.draw(rng);
     }
-    let (state, target) = on_spline(race, rng, voltage);
+    let parameters = Parameters::new(&race.vehicle, &factors, race.dt);
     Start { state, parameters, target }
 }
 

@@ -96,8 +96,9 @@ impl Check for Extension {
         }
         let n = self.uncertain.len();
         for key in &self.uncertain {
-            let known = key.split_once('.').and_then(|(effect, name)| index(effect, name));
-            Invalid::unless(known.is_some(), "uncertain", key, "effect.parameter, such as axial_inflow.k", "")?;
+            let sized = |(effect, name): (&str, &str)| self.sizes.get(effect).is_some_and(|p| p.contains_key(name));
+            let known = key.split_once('.').is_some_and(sized);
+            Invalid::unless(known, "uncertain", key, "a parameter among the sizes, such as axial_inflow.k", "")?;
         }
         let square = self.covariance.len() == n && self.covariance.iter().all(|row| row.len() == n);
         Invalid::unless(

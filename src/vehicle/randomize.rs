@@ -3,7 +3,6 @@
 use crate::check::{Check, Invalid};
 use crate::dynamics::Factors;
 use crate::rng::Sequence;
-use crate::vehicle::Vehicle;
 use serde::{Deserialize, Serialize};
 
 /// Ranges `[low, high]`, drawn evenly and independently for each episode. Factors multiply the nominal value; `[1, 1]`
@@ -40,14 +39,14 @@ impl Check for RandomizeConfig {
 }
 
 impl RandomizeConfig {
-    /// Draws all factors of one episode of `vehicle`.
-    pub fn draw(&self, vehicle: &Vehicle, rng: &mut Sequence) -> Factors {
+    /// Draws all factors of one episode, but those of effects, which are the vehicle's own.
+    pub fn draw(&self, rng: &mut Sequence) -> Factors {
         Factors {
             time_constant: std::array::from_fn(|_| rng.uniform(self.time_constant)),
             max_rate: std::array::from_fn(|_| rng.uniform(self.max_rate)),
             thrust: rng.uniform(self.thrust),
             drag: rng.uniform(self.drag),
-            effects: vehicle.effects.draw(rng),
+            effects: Factors::NOMINAL.effects,
         }
     }
 }

@@ -78,8 +78,9 @@ impl Sensors {
             scale: setting.noise,
             read: VecDeque::new(),
         };
-        // A calibrated sensor: larger constants are an effect of their own, whatever the noise.
-        let calibrated = |v: Vector3<f64>, sd: f64| v.map(|x| (x / scale.max(1e-9)).clamp(-1.5 * sd, 1.5 * sd));
+        // A calibrated sensor, whatever its noise: larger constants are an effect of their own.
+        let noise = setting.noise.max(1e-9);
+        let calibrated = |v: Vector3<f64>, sd: f64| v.map(|x| (x / noise).clamp(-1.5 * sd, 1.5 * sd));
         let (gyro, force) = (sensors.normal(GYRO[1]), sensors.normal(ACCELEROMETER[1]));
         (sensors.gyro_bias, sensors.force_bias) = (calibrated(gyro, GYRO[1]), calibrated(force, ACCELEROMETER[1]));
         sensors

@@ -1,0 +1,91 @@
+//! Effects hidden in flights of the independent simulator have to be found, and nothing where nothing is. The benchmark of the same name
+//! (`cargo bench --bench hidden_effects`) does so hundreds of times.
+
+mod truth;
+
+use racer::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
+use racer::diagnose::{Diagnosed, diagnose};
+use racer::flight::quality::check;
+use rand::SeedableRng;
+use rand::rngs::StdRng;
+use truth::Vehicle;
+use truth::effects::{Hidden, outside};
+use truth::hidden::{Setting, Style, fly};
+
+const SECONDS: f64 = 120.0;
+
+/// Two minutes of excited flight of `vehicle` with effects, diagnosed as if it had none.
+fn diagnosed(vehicle: &Vehicle, hidden: &[Hidden], seed: u64) -> Diagnosed {
+    let setting = Setting { seed, seconds: SECONDS, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
+    let log = fly(vehicle, hidden, &setting);
+    diagnose(vec![check(&log)], &vehicle.in_racer(), &mut |_, _| ())
+}
+
+fn named(d: &Diagnosis) -> Vec<&Finding> {
+    d.findings.iter().filter(|f| f.status != Status::Suspected).collect()
+}
+
+/// Hides effects of given sizes; all of them, and nothing else, have to be named, with the sizes within `within` of the truth.
+fn finds(seed: u64, effects: &[(&str, f64)], within: f64) {
+    let vehicle = Vehicle::draw(seed);
+    let mut rng = StdRng::seed_from_u64(seed);
+    let hidden: Vec<Hidden> = effects.iter().map(|(id, size)| Hidden::sized(id, *size, &vehicle, &mut rng)).collect();
+    let Diagnosed { diagnosis, .. } = diagnosed(&vehicle, &hidden, seed);
+    let found = named(&diagnosis);
+    let names: Vec<&str> = found.iter().map(|f| f.effect).collect();
+    assert_eq!(names.len(), effects.len(), "{effects:?} were hidden, {names:?} were named");
+    for truth in &hidden {
+        let finding = found.iter().find(|f| f.effect == truth.id);
+        let finding = finding.unwrap_or_else(|| panic!("{} was hidden, {names:?} were named", truth.id));
+        for value in truth.values() {
+            let estimate = &finding.parameters[value.name];
+            let error = (estimate.value - value.value) / value.against;
+            assert!(error.abs() < within, "{} {}: {} for {}", truth.id, value.name, estimate.value, value.value);
+        }
+    }
+    assert_eq!(diagnosis.verdict, Verdict::Effects);
+    assert!(diagnosis.captured.is_some_and(|c| c > 0.9), "captured {:?}", diagnosis.captured);
+}
+
+#[test]
+fn nothing_is_found_where_nothing_is() {
+    let vehicle = Vehicle::draw(41);
+    let Diagnosed { diagnosis, .. } = diagnosed(&vehicle, &[], 41);
+    assert_eq!(diagnosis.verdict, Verdict::Clean, "{:?}", diagnosis.findings);
+    assert!(diagnosis.drift.is_empty(), "{:?}", diagnosis.drift);
+}
+
+#[test]
+fn delays_are_found() {
+    finds(42, &[("rate_delay", 0.012), ("thrust_delay", 0.015)], 0.03);
+}
+
+#[test]
+fn the_battery_is_found() {
+    finds(43, &[("voltage_sag", 1.5)], 0.05);
+}
+
+#[test]
+fn inflow_and_rotor_drag_are_found() {
+    finds(44, &[("axial_inflow", 0.6), ("rotor_drag", 0.3)], 0.05);
+}
+
+#[test]
+fn a_lever_arm_corrects_the_log_and_is_no_dynamics() {
+    let vehicle = Vehicle::draw(45);
+    let mut rng = StdRng::seed_from_u64(45);
+    let hidden = [Hidden::sized("imu_lever_arm", 0.02, &vehicle, &mut rng)];
+    let Diagnosed { diagnosis, vehicle: extended, .. } = diagnosed(&vehicle, &hidden, 45);
+    assert_eq!(named(&diagnosis).iter().map(|f| f.effect).collect::<Vec<_>>(), ["imu_lever_arm"]);
+    assert!(extended.effects.is_empty(), "{:?}", extended.effects);
+}
+
+#[test]
+fn what_is_not_in_the_catalogue_is_not_given_a_name() {
+    let vehicle = Vehicle::draw(46);
+    let mut rng = StdRng::seed_from_u64(46);
+    let hidden = [outside::draw("drag_step", SECONDS, &mut rng)];
+    let Diagnosed { diagnosis, .. } = diagnosed(&vehicle, &hidden, 46);
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained);
+    assert!(diagnosis.unexplained.iter().any(|s| s.along == Some("time")), "{:?}", diagnosis.unexplained);
+}
