@@ -5,6 +5,7 @@ mod check;
 mod columns;
 mod diagnose;
 mod eval;
+mod extend;
 mod findings;
 mod fly;
 mod identify;
@@ -37,6 +38,7 @@ enum Command {
     Check(check::Args),
     Identify(identify::Args),
     Diagnose(diagnose::Args),
+    Extend(extend::Args),
     Bench(bench::Args),
 }
 
@@ -83,6 +85,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),
+        Command::Extend(args) => extend::run(&args),
         Command::Import(args) => import::run(&args),
         Command::Bench(args) => bench::run(&args),
     };
