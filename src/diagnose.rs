@@ -5,6 +5,9 @@
 //! ([`gram`], [`select`]), the best are fitted ([`fit`]), and what is found has to be evident, replicated, of a size that matters ([`judge`]) and
 //! complete: nothing structured may be left ([`structure`]).
 
+// Samples, axes and channels index several arrays at once here.
+#![allow(clippy::needless_range_loop)]
+
 pub mod drift;
 pub mod extend;
 pub mod figures;
