@@ -5,6 +5,7 @@
 pub mod air;
 pub mod battery;
 pub mod craft;
+pub mod held;
 pub mod inflow;
 pub mod inner;
 pub mod link;
@@ -19,6 +20,7 @@ use super::effects::Hidden;
 use super::effects::terms::Terms;
 use super::{CONTROL_S, STEPS, Vehicle};
 pub use craft::Craft;
+pub use held::Flight;
 use link::Link;
 use motion::Inputs;
 use motors::Controller;
