@@ -112,6 +112,12 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
             finding.why = Some(format!("more structure remains in {channel} than it explains"));
         }
     }
+    // A move of the base explains nothing where its channel still has structure.
+    let open = unexplained.iter().any(|s| s.channel == "specific force z");
+    for finding in findings.iter_mut().filter(|f| open && f.explained.contains_key(drift::MOVES)) {
+        finding.status = Status::Suspected;
+        finding.why = Some("structure remains in specific force z".into());
+    }
     findings.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
     let verdict = match (unexplained.is_empty(), findings.is_empty()) {
         (false, _) => Verdict::Unexplained,
@@ -158,9 +164,6 @@ fn settle_chance(problem: &Problem, selection: &mut Selection) -> Option<random:
     let dropout = effects::card("command_dropout")?;
     let lost = random::lost_commands(problem, selection);
     let are_lost = random::are_lost(&lost, dropout);
-    if std::env::var("RACER_TRACE").is_ok() {
-        eprintln!("{lost:?}");
-    }
     let at = |card: &effects::Card| model::span(card).start;
     let mut x = selection.point.x.clone();
     let mut free = selection.point.free.clone();

@@ -16,6 +16,9 @@ const SURE: f64 = 4.0;
 /// Share of the whole move that an effect has to account for to be named as its cause.
 const ACCOUNTS: f64 = 0.9;
 
+/// What such an effect explains.
+pub const MOVES: &str = "moves of thrust and drag against the base vehicle";
+
 /// Effects that the compact model can take up without trace, as a change of its own numbers.
 const ABSORBED: [&str; 4] = ["mass_or_density", "voltage_compensation", "throttle_offset", "thrust_fade"];
 
@@ -165,7 +168,7 @@ fn cause(judge: &Judge) -> Option<Finding> {
         channel: "specific force z",
         parameters: BTreeMap::from([(p.name.to_string(), value)]),
         stretches: (size / sd.max(1e-300)).powi(2).min(problem.blocks as f64),
-        explained: BTreeMap::from([("moves of thrust and drag against the base vehicle", accounts)]),
+        explained: BTreeMap::from([(MOVES, accounts)]),
         gain: BTreeMap::new(),
         impact: size.abs(),
         rivals: card.rivals.to_vec(),

@@ -212,16 +212,6 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
                 _ => break,
             }
         }
-        if std::env::var("RACER_TRACE").is_ok() {
-            for t in &trials {
-                eprintln!(
-                    "round {round}: {} gain {:.1} {:?}",
-                    t.card.id,
-                    t.gain,
-                    span(t.card).map(|k| t.point.x[k]).collect::<Vec<_>>()
-                );
-            }
-        }
         if best.gain < GAIN {
             break;
         }
@@ -337,20 +327,31 @@ fn try_best(
         }
     }
     let before = point.total();
+    let refitted = |card: &'static Card, start: &[(usize, f64)], shrink: f64| {
+        let own: Vec<usize> = span(card).collect();
+        let size = |k: &usize| start.iter().find(|(i, _)| i == k).map_or(0.0, |(_, value)| *value * shrink);
+        let begin: Vec<f64> = own.iter().map(size).collect();
+        fit::refit(problem, whitener, point, &own, &begin)
+    };
     let one = |&j: &usize| {
         let Direction { card, start } = &found[j].0;
-        let own: Vec<usize> = span(card).collect();
-        let begin: Vec<f64> =
-            own.iter().map(|k| start.iter().find(|(i, _)| i == k).map_or(0.0, |(_, value)| *value)).collect();
-        let mut refitted = fit::refit(problem, whitener, point, &own, &begin);
-        if refitted.total() > before {
-            // Too far away: from its smallest size, downhill.
-            let small: Vec<f64> =
-                begin.iter().zip(card.parameters).map(|(b, p)| b.signum() * b.abs().min(0.2 * p.typical[0])).collect();
-            refitted = fit::refit(problem, whitener, point, &own, &small);
+        let mut best = refitted(card, start, 1.0);
+        if best.total() > before {
+            // Too far away: from a size too small to matter, downhill.
+            best = refitted(card, start, 0.2 * card.parameters[0].typical[0] / start[0].1.abs());
         }
-        let gain = before - refitted.total();
-        Trial { card, point: refitted, gain }
+        if card.kind == Kind::Timing {
+            // Late signals fit at more than one delay.
+            let others = found.iter().enumerate().filter(|(i, (d, ..))| *i != j && d.card.id == card.id);
+            for (_, (other, ..)) in others {
+                let another = refitted(card, &other.start, 1.0);
+                if another.total() < best.total() {
+                    best = another;
+                }
+            }
+        }
+        let gain = before - best.total();
+        Trial { card, point: best, gain }
     };
     chosen.par_iter().map(one).collect()
 }
