@@ -174,10 +174,13 @@ fn a_vehicle_file_with_wrong_effects_is_refused() {
             ["effects.uncertain", "axial_inflow.gain"],
         ),
         (
-            "[effects]\nuncertain = [\"axial_inflow.k\"]\ncovariance = [[-1.0]]",
+            "[effects]\nuncertain = [\"axial_inflow.k\"]\ncovariance = [[-1.0]]\n[effects.sizes.axial_inflow]\nk = 0.5",
             ["effects.covariance", "positive definite"],
         ),
-        ("[effects]\nuncertain = [\"axial_inflow.k\"]", ["effects.covariance", "1 rows of 1"]),
+        (
+            "[effects]\nuncertain = [\"axial_inflow.k\"]\n[effects.sizes.axial_inflow]\nk = 0.5",
+            ["effects.covariance", "1 rows of 1"],
+        ),
     ] {
         let message = load(&format!("\n{text}\n")).expect_err(text).to_string();
         for part in parts {

@@ -87,5 +87,7 @@ fn what_is_not_in_the_catalogue_is_not_given_a_name() {
     let hidden = [outside::draw("drag_step", SECONDS, &mut rng)];
     let Diagnosed { diagnosis, .. } = diagnosed(&vehicle, &hidden, 46);
     assert_eq!(diagnosis.verdict, Verdict::Unexplained);
-    assert!(diagnosis.unexplained.iter().any(|s| s.along == Some("time")), "{:?}", diagnosis.unexplained);
+    let channels: Vec<&str> = diagnosis.unexplained.iter().map(|s| s.channel).collect();
+    assert!(channels.contains(&"specific force x"), "{channels:?}");
+    assert!(named(&diagnosis).iter().all(|f| f.channel != "specific force x"), "{:?}", named(&diagnosis));
 }
