@@ -34,7 +34,7 @@ use crate::identify::data::Data;
 use crate::stats::mean;
 use crate::vehicle::Vehicle;
 use finding::{Diagnosis, Finding, Residual, Status, Verdict};
-use judge::Judge;
+use judge::{Judge, Judged};
 use model::Model;
 use problem::Problem;
 use record::Record;
@@ -89,12 +89,12 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
     let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
     let judge = Judge::new(&problem, &selection);
-    let mut findings: Vec<Finding> =
-        selection.added.iter().map(|a| judge.judge(a)).filter(|j| j.material).map(|j| j.finding).collect();
+    let mut judged: Vec<Judged> = selection.added.iter().map(|a| judge.judge(a)).filter(|j| j.material).collect();
+    judged.extend(biases(&judge));
+    let mut findings: Vec<Finding> = judged.iter().map(|j| j.finding.clone()).collect();
     if let (Some(lost), Some(finding)) = (lost, findings.iter_mut().find(|f| f.effect == "command_dropout")) {
         finding.counted(&lost);
     }
-    findings.extend(biases(&judge));
     let force_structure = structure.iter().filter(|s| s.channel.starts_with("specific force")).map(|s| s.structure_rms);
     findings.extend(random::gusts(&problem, &selection, force_structure.fold(0.0, f64::max)));
     let (drift, cause) = drift::find(&judge);
@@ -102,8 +102,9 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     watch("measuring the gain", 0.9);
     let held = gain::measure(&problem, &selection);
     for finding in &mut findings {
-        let shown = finding.explained.keys().filter_map(|c| held.channels.get(c).map(|g| (*c, g.clone())));
-        finding.gain = shown.collect();
+        let one = judged.iter().find(|j| j.finding.effect == finding.effect);
+        let all = one.map_or(held.channels.clone(), |j| held.of_one(&problem, &j.change));
+        finding.gain = all.into_iter().filter(|(c, _)| finding.explained.contains_key(c)).collect();
     }
     let unexplained = unexplained(&structure, &findings, &selection, &problem);
     for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected) {
@@ -198,7 +199,7 @@ fn settle_chance(problem: &Problem, selection: &mut Selection) -> Option<random:
 }
 
 /// Constant errors of the IMU, which every fit allows for.
-fn biases(judge: &Judge) -> Vec<Finding> {
+fn biases(judge: &Judge) -> Vec<Judged> {
     // Larger than what any such sensor has, by a share of the smallest size that is one.
     const SHARE: f64 = 0.8;
     let point = &judge.selection.point;
@@ -208,7 +209,7 @@ fn biases(judge: &Judge) -> Vec<Finding> {
         let Some(card) = effects::card(id) else { continue };
         let size = model::span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
         if seen(channel) && size > SHARE * card.parameters[0].typical[0] {
-            out.push(judge.judge(&Added { card, ties: Vec::new() }).finding);
+            out.push(judge.judge(&Added { card, ties: Vec::new() }));
         }
     }
     out

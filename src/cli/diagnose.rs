@@ -234,10 +234,17 @@ fn paragraph(f: &Finding) -> String {
         Status::NamedSet => format!(" - or {}: these flights do not tell them apart", f.members[1..].join(", ")),
         Status::Suspected => format!(" - suspected only: {}", f.why.as_deref().unwrap_or("")),
     };
-    let explained =
-        f.explained.iter().map(|(c, share)| format!("{:.0} % of {c}", 100.0 * share)).collect::<Vec<_>>().join(", ");
+    let explained: Vec<String> =
+        f.mentioned().iter().map(|(c, share)| format!("{:.0} % of {c}", 100.0 * share)).collect();
+    let explained = if explained.is_empty() { String::new() } else { format!("explains {}; ", explained.join(", ")) };
+    let gain = f.gain.get(f.channel).map_or(String::new(), |g| {
+        format!(
+            "\n   without it, on flight not used for fitting, {} {:.3} {} off; with it {:.3}",
+            f.channel, g.before, g.unit, g.after
+        )
+    });
     format!(
-        "{} ({}){status}\n   {}\n   {}\n   explains {explained}; {:.0} stretches agree; {:.2} m/s after a second",
+        "{} ({}){status}\n   {}\n   {}\n   {explained}{:.0} stretches agree; {:.2} m/s after a second{gain}",
         f.name,
         f.effect,
         f.sentence,

@@ -1,6 +1,7 @@
 //! Numbers of the compact model that moved, and effects that look like nothing but such a move.
 
 use super::finding::{Drift, Finding, Status, Value};
+use super::fit::{covariance, fit};
 use super::gram::{Grams, inverse};
 use super::judge::Judge;
 use super::model::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
@@ -88,7 +89,8 @@ fn cause(judge: &Judge) -> Option<Finding> {
     let problem = judge.problem;
     let point = &judge.selection.point;
     let residual = judge.selection.whitener.apply(&point.residual, &problem.rows);
-    let cards: Vec<&'static Card> = ABSORBED.iter().filter_map(|id| effects::card(id)).collect();
+    let unnamed = |card: &&Card| !point.free.contains(&span(card).start);
+    let cards: Vec<&'static Card> = ABSORBED.iter().filter_map(|id| effects::card(id)).filter(unnamed).collect();
     let n = point.free.len();
     let columns: Vec<Values> = cards
         .iter()
@@ -148,11 +150,12 @@ fn cause(judge: &Judge) -> Option<Finding> {
     let norm = (scale.transpose() * &weight)[(0, 0)].max(1e-300);
     let plain = ((weight.transpose() * &moved)[(0, 0)]).powi(2) / norm / energy.max(1e-300);
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let &(accounts, c, size, sd) = found.first()?;
+    let &(accounts, c, size, _) = found.first()?;
     if accounts < ACCOUNTS || plain > accounts {
         return None;
     }
     let card = cards[c];
+    let (size, sd) = instead(judge, card, size)?;
     let near: Vec<&'static str> =
         found.iter().skip(1).filter(|f| 1.0 - f.0 < 2.0 * (1.0 - accounts) + 0.003).map(|f| cards[f.1].id).collect();
     let p = &card.parameters[0];
@@ -176,4 +179,20 @@ fn cause(judge: &Judge) -> Option<Finding> {
         kinds: kinds.to_vec(),
         why: None,
     })
+}
+
+/// Size and standard deviation of an effect that takes the place of all moves of thrust and drag, near `size`.
+fn instead(judge: &Judge, card: &Card, size: f64) -> Option<(f64, f64)> {
+    let (problem, whitener) = (judge.problem, &judge.selection.whitener);
+    let moves = |k: &usize| THRUST.contains(k) || DRAG.contains(k);
+    let own = span(card).start;
+    let mut x = judge.selection.point.x.clone();
+    (0..x.len()).filter(moves).for_each(|k| x[k] = problem.model.base[k]);
+    x[own] = size;
+    let kept = judge.selection.point.free.iter().copied().filter(|k| !moves(k));
+    let free: Vec<usize> = kept.chain([own]).collect();
+    let point = fit(problem, whitener, &x, &free);
+    let last = free.len() - 1;
+    let sd = covariance(problem, whitener, &point)?[(last, last)].max(0.0).sqrt();
+    Some((point.x[own], sd))
 }

@@ -65,7 +65,7 @@ pub struct Finding {
     pub stretches: f64,
     /// Share of each channel's residual power that goes with it.
     pub explained: BTreeMap<&'static str, f64>,
-    /// On flight that was not used for fitting.
+    /// On flight that was not used for fitting: the extended model without this effect, and with it.
     pub gain: BTreeMap<&'static str, Gain>,
     /// How far apart the simulations with and without it are after one second, m/s; for sensors, what the error integrates to.
     pub impact: f64,
@@ -77,6 +77,9 @@ pub struct Finding {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
 }
+
+/// Shares of a channel below this are not worth a word.
+const MENTIONED: f64 = 0.02;
 
 /// A number of the compact model that differs from the base vehicle's.
 #[derive(Clone, Debug, Serialize)]
@@ -177,6 +180,14 @@ impl Diagnosis {
 }
 
 impl Finding {
+    /// Shares of the channels that are worth a word, the largest first.
+    pub fn mentioned(&self) -> Vec<(&'static str, f64)> {
+        let mut shares: Vec<_> =
+            self.explained.iter().map(|(c, s)| (*c, *s)).filter(|(_, s)| *s >= MENTIONED).collect();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+        shares
+    }
+
     /// Lost commands, as counted.
     pub(super) fn counted(&mut self, lost: &super::random::Lost) {
         let [low, high] = lost.interval;

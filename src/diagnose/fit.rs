@@ -175,8 +175,8 @@ fn descend(
     None
 }
 
-/// Fits `point` with the numbers `own` beside its own, from `start`; the derivatives of the point's own numbers are taken as they are there.
-pub fn refit(problem: &Problem, whitener: &Whitener, point: &Point, own: &[usize], start: &[f64]) -> Point {
+/// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken as they are there.
+pub fn refit(problem: &Problem, whitener: &Whitener, point: &Point, own: &[usize], x: &[f64]) -> Point {
     // Rates and forces hardly know of each other: what the numbers do not touch stays as it is.
     let all = || own.iter().map(|&k| &problem.model.numbers[k]);
     let (rates, forces) = (all().any(|n| n.rates), all().any(|n| n.forces));
@@ -186,12 +186,11 @@ pub fn refit(problem: &Problem, whitener: &Whitener, point: &Point, own: &[usize
     };
     let kept: Vec<usize> = (0..point.free.len()).filter(|&j| touched(&point.free[j])).collect();
     let free: Vec<usize> = kept.iter().map(|&j| point.free[j]).chain(own.iter().copied()).collect();
-    let mut x = point.x.clone();
-    own.iter().zip(start).for_each(|(&k, value)| x[k] = *value);
-    let state = problem.change(&point.state, own, &x);
+    let moved: Vec<usize> = (0..x.len()).filter(|&k| x[k] != point.x[k]).collect();
+    let state = problem.change(&point.state, &moved, x);
     let residual = problem.residuals(&state);
     let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
-    let mut at = Point { x, state, free: Vec::new(), white: Vec::new(), residual, cost };
+    let mut at = Point { x: x.to_vec(), state, free: Vec::new(), white: Vec::new(), residual, cost };
     for _ in 0..CHORDS + 2 {
         let mine = whitened_slopes(problem, whitener, &at.state, &at.x, own);
         let white: Vec<&Values> = kept.iter().map(|&j| &point.white[j]).chain(&mine).collect();

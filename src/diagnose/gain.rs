@@ -19,6 +19,19 @@ pub struct HeldOut {
     pub horizons: Vec<Ahead>,
     /// Share of the achievable fall of the whitened squares.
     pub captured: Option<f64>,
+    extended: Point,
+    out: Vec<bool>,
+}
+
+impl HeldOut {
+    /// What one effect is worth beside the others: the extended model against itself without that effect, whose absence moves the numbers by `change`.
+    pub fn of_one(&self, problem: &Problem, change: &[f64]) -> BTreeMap<&'static str, Gain> {
+        let x: Vec<f64> = self.extended.x.iter().zip(change).map(|(x, by)| x + by).collect();
+        let state = problem.predict(&x);
+        let residual = problem.residuals(&state);
+        let without = Point { x, state, free: Vec::new(), white: Vec::new(), residual, cost: Vec::new() };
+        channels(problem, &without, &self.extended, &self.out)
+    }
 }
 
 /// Whether each stretch of time is held out.
@@ -64,6 +77,8 @@ pub fn measure(problem: &Problem, selection: &Selection) -> HeldOut {
         channels: channels(problem, &base, &extended, &out),
         horizons: horizons(problem, &base, &extended, &out),
         captured: captured.map(|c| c.min(1.0)),
+        extended,
+        out,
     }
 }
 

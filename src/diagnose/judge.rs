@@ -42,6 +42,8 @@ struct Replicated {
 pub struct Judged {
     pub finding: Finding,
     pub material: bool,
+    /// How the fitted numbers move where the effect is left out.
+    pub change: Vec<f64>,
 }
 
 impl<'a> Judge<'a> {
@@ -186,7 +188,8 @@ impl<'a> Judge<'a> {
             kinds: kinds.to_vec(),
             why,
         };
-        Judged { finding, material }
+        let change = x.iter().zip(&self.point().x).map(|(without, with)| without - with).collect();
+        Judged { finding, material, change }
     }
 
     /// The effect's parameters as people read them, with intervals.

@@ -3,13 +3,13 @@
 use super::model::{BEGIN, Model, Stage};
 use super::record::Record;
 use crate::dynamics::Parameters;
-use crate::dynamics::attitude::{Quaternion, body_axes, compose, normalized, small_rotation};
+use crate::dynamics::attitude::{Quaternion, body_axes, compose, dot, normalized, small_rotation};
 use crate::dynamics::battery::discharged;
 use crate::dynamics::extended::{self, Moment};
 use crate::effects::{self, Sensed};
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::period;
-use crate::lane::{Kernel, Lane32, Level, dispatch};
+use crate::lane::{Kernel, Lane32, Level, build, dispatch};
 use std::sync::Arc;
 
 /// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
@@ -29,6 +29,8 @@ pub struct Predicted {
     /// Filtered commands, and the share that each rate lags, summed.
     command: Arc<Vec<[f64; 4]>>,
     lag: Arc<Vec<f64>>,
+    /// What the filtered commands go to, and how fast those of the rates change.
+    asked: Arc<Vec<([f64; 4], [f64; 3])>>,
     /// Body rates, and those that the gyro's late samples show.
     pub rates: Arc<Vec<[f64; 3]>>,
     seen_rates: Arc<Vec<[f64; 3]>>,
@@ -45,6 +47,7 @@ pub struct Predicted {
 struct Responses {
     command: Vec<[f64; 4]>,
     lag: Vec<f64>,
+    asked: Vec<([f64; 4], [f64; 3])>,
 }
 
 /// What of a prediction has to be made again.
@@ -93,8 +96,8 @@ impl Predicted {
         let p = model.parameters(x);
         let stage = what.stage;
         if stage <= Stage::Response {
-            let Responses { command, lag } = respond(&p, record, model, x, 0.0);
-            (self.command, self.lag) = (command.into(), lag.into());
+            let Responses { command, lag, asked } = respond(&p, record, model, x, 0.0);
+            (self.command, self.lag, self.asked) = (command.into(), lag.into(), asked.into());
         }
         if stage <= Stage::Spin && what.rates {
             let offset = model.of(x, "stream_offset", "offset");
@@ -111,7 +114,7 @@ impl Predicted {
         if stage <= Stage::Force && what.forces {
             self.push(&p, record, model.of(x, "velocity_lag", "tau"), model.vehicle().gravity_m_s2);
         }
-        self.sense(what, model, record, x);
+        self.sense(&p, what, model, record, x);
         if what.corrections {
             self.integrate(model, record, x);
         }
@@ -153,11 +156,16 @@ impl Predicted {
     fn push(&mut self, p: &Parameters<f64>, record: &Record, tau: f64, gravity: f64) {
         let since = record.since();
         let mut out = Vec::with_capacity(record.time.len());
+        let force = |i: usize| -> [f64; 3] { build!(|k| record.fine.imu[3 + k][i]) };
+        let late = if tau > 0.0 { Some(lagged(record, tau, force)) } else { None };
         for i in 0..record.time.len() {
-            let mut velocity = [0.0; 3];
-            for k in 0..3 {
-                let gains = record.imu[3 + k][i] - gravity * record.axes[i][k][2];
-                velocity[k] = record.velocity[k][i] + if tau > 0.0 { tau * gains } else { 0.0 };
+            let mut velocity: [f64; 3] = build!(|k| record.velocity[k][i]);
+            if let Some(late) = &late {
+                let mut gains = late[i * record.fine.every];
+                gains[2] -= gravity;
+                for k in 0..3 {
+                    velocity[k] += tau * dot(record.axes[i][k], gains);
+                }
             }
             let moment = Moment {
                 command: self.command[i][3],
@@ -176,9 +184,10 @@ impl Predicted {
 
     /// Readings, averaged over bins.
     #[inline(always)]
-    fn sense(&mut self, what: Anew, model: &Model, record: &Record, x: &[f64]) {
+    fn sense(&mut self, p: &Parameters<f64>, what: Anew, model: &Model, record: &Record, x: &[f64]) {
         let k = model.sensors(x);
-        let acceleration = slopes(&record.time, &self.rates);
+        let arm = ["rx", "ry", "rz"].iter().any(|side| model.of(x, "imu_lever_arm", side) != 0.0);
+        let acceleration = if arm { self.turning(p, record) } else { vec![[0.0; 3]; record.time.len()] };
         let known =
             |c: usize| if c < 3 { record.commanded[0] } else { record.commanded[1] && (record.moves || c == 5) };
         let wanted = |c: usize| known(c) && if c < 3 { what.rates } else { what.forces };
@@ -205,6 +214,24 @@ impl Predicted {
         }
     }
 
+    /// Angular acceleration, rad/s2: what the response does at each moment, for it is over in a few samples.
+    #[inline(always)]
+    fn turning(&self, p: &Parameters<f64>, record: &Record) -> Vec<[f64; 3]> {
+        const MOMENT_S: f64 = 1e-5;
+        if !record.commanded[0] {
+            return slopes(&record.time, &self.rates);
+        }
+        let mut out = Vec::with_capacity(record.time.len());
+        for i in 0..record.time.len() {
+            let (sent, slope) = self.asked[i];
+            let voltage = supplied(p, record, i);
+            let (next, _) = extended::respond(p, self.command[i], slope, sent, voltage, MOMENT_S);
+            let (now, next) = (extended::spin(p, self.command[i]), extended::spin(p, next));
+            out.push(build!(|k| (next[k] - now[k]) / MOMENT_S));
+        }
+        out
+    }
+
     /// What the IMU, corrected, integrates to over each window: the turn (rotation vector) and the change of velocity (less gravity), both in the
     /// body frame at the window's beginning.
     #[inline(always)]
@@ -226,7 +253,7 @@ impl Predicted {
             let force = [fine.imu[3][i], fine.imu[4][i], fine.imu[5][i]];
             corrected.push(truth(k, [gyro[i], force], slope[i], throttle));
         }
-        let lagged = if tau > 0.0 { Some(lagged(record, &corrected, tau)) } else { None };
+        let lagged = if tau > 0.0 { Some(missing(record, &corrected, tau)) } else { None };
         let mut out: [Vec<f64>; 6] = Default::default();
         for &[from, to] in &record.windows {
             let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
@@ -350,23 +377,55 @@ fn shifted(record: &Record, offset: f64) -> Vec<[f64; 3]> {
     (0..n).map(|i| std::array::from_fn(|k| at(record.fine.time[i] + offset, k, i))).collect()
 }
 
-/// What a first-order lag of `tau` seconds adds to accelerations, in the world.
+/// Specific forces `force` of the IMU's samples, turned into the world and through a first-order lag of `tau` seconds; straight lines between samples.
 #[inline(always)]
-fn lagged(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
-    let mut now = [0.0; 3];
-    let mut out = Vec::with_capacity(corrected.len());
-    for i in 0..corrected.len() {
-        let h = if i > 0 { record.fine.time[i] - record.fine.time[i - 1] } else { 1.0 };
-        let alpha = crate::dynamics::response::alpha(tau, h);
-        let world = in_world(&record.axes[i / record.fine.every], [corrected[i][3], corrected[i][4], corrected[i][5]]);
-        for k in 0..3 {
-            let next = now[k] + alpha * (world[k] - now[k]);
-            now[k] = if next.is_finite() { next } else { now[k] };
+fn lagged(record: &Record, tau: f64, force: impl Fn(usize) -> [f64; 3]) -> Vec<[f64; 3]> {
+    let fine = &record.fine;
+    let mut now: Option<[[f64; 3]; 2]> = None;
+    let mut out = Vec::with_capacity(fine.time.len());
+    for i in 0..fine.time.len() {
+        let world = in_world(&fine_axes(record, i), force(i));
+        let finite = world[0].is_finite() && world[1].is_finite() && world[2].is_finite();
+        let next = match now {
+            Some([late, _]) if !finite => late,
+            Some([late, before]) => {
+                let h = fine.time[i] - fine.time[i - 1];
+                let alpha = crate::dynamics::response::alpha(tau, h);
+                build!(|k| {
+                    let rising = (world[k] - before[k]) * tau / h.max(1e-9);
+                    world[k] - rising * alpha + (late[k] - before[k]) * (1.0 - alpha)
+                })
+            }
+            None => world,
+        };
+        if finite {
+            now = Some([next, world]);
         }
-        let added: [f64; 3] = std::array::from_fn(|k| now[k] - world[k]);
-        out.push(added.map(|x| if x.is_finite() { x } else { 0.0 }));
+        out.push(if next[0].is_finite() { next } else { [0.0; 3] });
     }
     out
+}
+
+/// What such a lag adds to the corrected specific forces.
+#[inline(always)]
+fn missing(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
+    let force = |i: usize| -> [f64; 3] { build!(|k| corrected[i][3 + k]) };
+    let late = lagged(record, tau, force);
+    let added = |i: usize| {
+        let world = in_world(&fine_axes(record, i), force(i));
+        let added: [f64; 3] = build!(|k| late[i][k] - world[k]);
+        if added[0].is_finite() { added } else { [0.0; 3] }
+    };
+    (0..late.len()).map(added).collect()
+}
+
+/// The body's axes in the world at a sample of the whole IMU, between those at the record's.
+#[inline(always)]
+fn fine_axes(record: &Record, i: usize) -> [[f64; 3]; 3] {
+    let at = i / record.fine.every;
+    let share = (i % record.fine.every) as f64 / record.fine.every as f64;
+    let (a, b) = (&record.axes[at], &record.axes[(at + 1).min(record.axes.len() - 1)]);
+    build!(|j| build!(|k| a[j][k] + share * (b[j][k] - a[j][k])))
 }
 
 /// Change of each rate, by central differences.
@@ -398,9 +457,11 @@ fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offse
     let stretch = 1.0 / (1.0 + model.of(x, "clock_skew", "skew"));
     let lost = model.of(x, "command_dropout", "probability");
     let n = record.time.len();
-    let mut out = Responses { command: Vec::with_capacity(n), lag: Vec::with_capacity(n) };
+    let mut out =
+        Responses { command: Vec::with_capacity(n), lag: Vec::with_capacity(n), asked: Vec::with_capacity(n) };
+    let none = [f64::NAN; 4];
     let Some((first, begin)) = record.sent.first().copied() else {
-        return Responses { command: vec![[f64::NAN; 4]; n], lag: vec![0.0; n] };
+        return Responses { command: vec![none; n], lag: vec![0.0; n], asked: vec![(none, [0.0; 3]); n] };
     };
     // What arrives on average where commands get lost.
     let arrives = |i: usize, k: usize| {
@@ -413,11 +474,12 @@ fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offse
     for i in 0..n {
         let t = record.time[i] * stretch;
         if t < first {
-            out.command.push([f64::NAN; 4]);
+            out.command.push(none);
             out.lag.push(f64::NAN);
+            out.asked.push((none, [0.0; 3]));
             continue;
         }
-        let voltage = if record.voltage[i].is_finite() { record.voltage[i] } else { p.beyond.full_v };
+        let voltage = supplied(p, record, i);
         loop {
             let due = |g: usize| record.sent.get(at[g] + 1).map_or(f64::INFINITY, |next| next.0 + late[g]);
             let (g, next) = if due(0) <= due(1) { (0, due(0)) } else { (1, due(1)) };
@@ -435,6 +497,13 @@ fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offse
         }
         out.command.push(command);
         out.lag.push((0..3).map(|k| (sent[k] - command[k]).abs()).sum());
+        out.asked.push((sent, slope));
     }
     out
+}
+
+/// The voltage that a sample's response depends on, V.
+#[inline(always)]
+fn supplied(p: &Parameters<f64>, record: &Record, i: usize) -> f64 {
+    if record.voltage[i].is_finite() { record.voltage[i] } else { p.beyond.full_v }
 }

@@ -102,7 +102,7 @@ pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Op
             let mut blocks = vec![0.0; problem.blocks];
             let mut n = 0.0;
             for i in lag..rows.len() {
-                if rows[i].index - rows[i - lag].index == lag as u32 && rows[i].flight == rows[i - lag].flight {
+                if rows[i].flight == rows[i - lag].flight && rows[i].index == rows[i - lag].index + lag as u32 {
                     blocks[rows[i].block as usize] += y(i) * y(i - lag);
                     n += 1.0;
                 }

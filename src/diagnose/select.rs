@@ -3,7 +3,7 @@
 use super::fit::{self, Point};
 use super::gram::{Grams, score};
 use super::judge::is_material;
-use super::model::{BEGIN, DISCHARGE, cards, span};
+use super::model::{BEGIN, DISCHARGE, TAU, cards, span};
 use super::problem::{Problem, Values};
 use super::whiten::Whitener;
 use crate::effects::{Card, Kind};
@@ -40,6 +40,21 @@ pub struct Trial {
     pub point: Point,
     /// Fall of the whitened squares.
     pub gain: f64,
+}
+
+impl Trial {
+    /// Gain; half of it where a number ends at the bound of its range, for then the effect stands in for something else.
+    fn merit(&self, problem: &Problem) -> f64 {
+        if self.bounded(problem) { 0.5 * self.gain } else { self.gain }
+    }
+
+    fn bounded(&self, problem: &Problem) -> bool {
+        let at_end = |k: usize| {
+            let (n, x) = (&problem.model.numbers[k], self.point.x[k]);
+            x != 0.0 && (x <= n.low || x >= n.high)
+        };
+        span(self.card).any(at_end)
+    }
 }
 
 /// What a log could show of an effect, before any residual is looked at.
@@ -199,10 +214,12 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
         if round == MOST {
             break;
         }
-        let trials = try_best(problem, &whitener, &point, &found, &scored);
+        let mut trials = try_best(problem, &whitener, &point, &found, &scored);
+        // Beside a rival that is already there, it would only take that one's place.
+        trials.retain(|t| !(t.bounded(problem) && held.iter().any(|h| rivals(h, t.card))));
         let best_of = |material: bool| {
             let fitting = trials.iter().filter(|t| !material || is_material(t.card, &t.point.x));
-            fitting.max_by(|a, b| a.gain.total_cmp(&b.gain))
+            fitting.max_by(|a, b| a.merit(problem).total_cmp(&b.merit(problem)))
         };
         let Some(mut best) = best_of(false) else { break };
         // What is too small to matter is kept beside the causes only where it would stand in their way.
@@ -222,6 +239,10 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
     }
     let base = if added.is_empty() { point.clone() } else { fit::fit(problem, &whitener, &problem.model.base, &free) };
     Selection { point, whitener, added, base, reach }
+}
+
+fn rivals(a: &Card, b: &Card) -> bool {
+    a.rivals.contains(&b.id) || b.rivals.contains(&a.id)
 }
 
 /// Whether a trial comes so near the best that their stretches of time do not decide.
@@ -304,6 +325,15 @@ fn rank(
     (order, reach)
 }
 
+/// The time constants that a delay is mistaken for.
+fn delayed(card: &Card) -> std::ops::Range<usize> {
+    match card.id {
+        "rate_delay" => TAU.start..TAU.start + 3,
+        "thrust_delay" => TAU.start + 3..TAU.end,
+        _ => 0..0,
+    }
+}
+
 /// Refits the first of the ranking, and the rivals of the very first.
 fn try_best(
     problem: &Problem,
@@ -317,7 +347,7 @@ fn try_best(
         let card = found[j].0.card;
         let known = chosen.iter().any(|&i| found[i].0.card.id == card.id);
         let leader = chosen.first().map(|&i| found[i].0.card);
-        let rival = leader.is_some_and(|l| l.rivals.contains(&card.id) || card.rivals.contains(&l.id));
+        let rival = leader.is_some_and(|l| rivals(l, card));
         if !known
             && gain > 0.5 * GAIN
             && (evidence > 0.5 * EVIDENCE || gain > RARE)
@@ -327,11 +357,19 @@ fn try_best(
         }
     }
     let before = point.total();
-    let refitted = |card: &'static Card, start: &[(usize, f64)], shrink: f64| {
+    let from = |x: &[f64], card: &'static Card, start: &[(usize, f64)], shrink: f64| {
         let own: Vec<usize> = span(card).collect();
-        let size = |k: &usize| start.iter().find(|(i, _)| i == k).map_or(0.0, |(_, value)| *value * shrink);
-        let begin: Vec<f64> = own.iter().map(size).collect();
-        fit::refit(problem, whitener, point, &own, &begin)
+        let mut x = x.to_vec();
+        own.iter().for_each(|&k| x[k] = 0.0);
+        start.iter().for_each(|(k, value)| x[*k] = value * shrink);
+        fit::refit(problem, whitener, point, &own, &x)
+    };
+    let refitted = |card, start: &[(usize, f64)], shrink| from(&point.x, card, start, shrink);
+    // A lag that was fitted without its delay is too long by about that.
+    let shortened = |card: &Card, delay: f64| {
+        let mut x = point.x.clone();
+        delayed(card).for_each(|k| x[k] = (x[k] - delay).max(0.3 * x[k]).max(problem.model.numbers[k].low));
+        x
     };
     let one = |&j: &usize| {
         let Direction { card, start } = &found[j].0;
@@ -340,11 +378,13 @@ fn try_best(
             // Too far away: from a size too small to matter, downhill.
             best = refitted(card, start, 0.2 * card.parameters[0].typical[0] / start[0].1.abs());
         }
-        if card.kind == Kind::Timing {
+        if card.parameters[0].unit == "s" {
             // Late signals fit at more than one delay.
             let others = found.iter().enumerate().filter(|(i, (d, ..))| *i != j && d.card.id == card.id);
-            for (_, (other, ..)) in others {
-                let another = refitted(card, &other.start, 1.0);
+            let others = others.map(|(_, (other, ..))| refitted(card, &other.start, 1.0));
+            let beside = found.iter().filter(|(d, ..)| d.card.id == card.id && !delayed(card).is_empty());
+            let beside = beside.map(|(d, ..)| from(&shortened(card, d.start[0].1), card, &d.start, 1.0));
+            for another in others.chain(beside) {
                 if another.total() < best.total() {
                     best = another;
                 }

@@ -10,6 +10,8 @@ use nalgebra::{DMatrix, DVector};
 const ORDER: [usize; 3] = [8, 3, 4];
 /// Whitened residuals beyond so many standard deviations weigh less (Huber).
 const HUBER: f64 = 3.5;
+/// Largest sum of the coefficients: a constant residual keeps at least what is left to 1 of its size.
+const MOST_MEMORY: f64 = 0.6;
 /// Rows below which a channel is left out.
 const LEAST_ROWS: usize = 40;
 
@@ -119,7 +121,12 @@ fn autoregression(x: &[f64], rows: &[Row], order: usize) -> (Vec<f64>, f64) {
     }
     let ridge = 1e-6 * power + 1e-300;
     let full = DMatrix::from_fn(order, order, |a, b| normal[(a.max(b), a.min(b))] + if a == b { ridge } else { 0.0 });
-    let past = full.cholesky().map_or(vec![0.0; order], |c| c.solve(&right).iter().copied().collect());
+    let mut past: Vec<f64> = full.cholesky().map_or(vec![0.0; order], |c| c.solve(&right).iter().copied().collect());
+    // What measured flights leave is so slow that its whitening would discard everything slow, the causes with it.
+    let memory: f64 = past.iter().sum();
+    if memory > MOST_MEMORY {
+        past.iter_mut().for_each(|a| *a *= MOST_MEMORY / memory);
+    }
     let sd = (power / x.len().max(1) as f64).sqrt();
     (past, 1.0 / sd.max(1e-12))
 }

@@ -18,6 +18,7 @@ impl Effect for It {
         shown: None,
     };
 
+    #[inline(always)]
     fn sense(k: &[f64], sensed: &mut Sensed) {
         sensed.force = sensed.force.map(|f| f * (1.0 + k[0]));
     }

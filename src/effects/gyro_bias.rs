@@ -22,6 +22,7 @@ impl Effect for It {
         shown: None,
     };
 
+    #[inline(always)]
     fn sense(k: &[f64], sensed: &mut Sensed) {
         (0..3).for_each(|i| sensed.rates[i] += k[i]);
     }

@@ -18,6 +18,7 @@ impl Effect for It {
         shown: None,
     };
 
+    #[inline(always)]
     fn sense(k: &[f64], sensed: &mut Sensed) {
         sensed.rates = sensed.rates.map(|w| w * (1.0 + k[0]));
     }

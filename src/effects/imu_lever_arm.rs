@@ -23,6 +23,7 @@ impl Effect for It {
         shown: None,
     };
 
+    #[inline(always)]
     fn sense(k: &[f64], sensed: &mut Sensed) {
         let r = [k[0], k[1], k[2]];
         let turning = cross(sensed.acceleration, r);

@@ -22,6 +22,7 @@ impl Effect for It {
         shown: None,
     };
 
+    #[inline(always)]
     fn sense(k: &[f64], sensed: &mut Sensed) {
         let load = sensed.throttle * sensed.throttle;
         (0..3).for_each(|i| sensed.force[i] += k[i] * load);

@@ -7,6 +7,7 @@ mod outliers;
 mod phases;
 mod signs;
 mod timing;
+mod tumbling;
 
 pub use coverage::Parameter;
 
@@ -105,6 +106,7 @@ pub fn check(log: &Log) -> Quality {
     holes.extend(phases::impacts(&log, &mut findings));
     holes.extend(phases::ground(&log, &mut findings));
     holes.extend(clipping::find(&log, &mut findings));
+    holes.extend(tumbling::find(&log, &mut findings));
     let times = &log.imu.time_s;
     let mut usable = spans::without([times[0], times[times.len() - 1]], &holes);
     usable.retain(|span| span[1] - span[0] >= phases::SHORTEST_S);

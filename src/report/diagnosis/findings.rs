@@ -6,9 +6,6 @@ use crate::effects;
 use crate::report::page::{digits, unit};
 use maud::{Markup, html};
 
-/// Shares of a channel below this are not worth a word.
-const MENTIONED: f64 = 0.02;
-
 pub fn all(d: &Diagnosis) -> Markup {
     html! {
         @if !d.findings.is_empty() { h2 { "Found" } }
@@ -28,7 +25,7 @@ fn one(rank: usize, f: &Finding) -> Markup {
                     (parameter(name, value))
                 }
             }
-            p { (explains(f)) (format!("{:.0} stretches of flight agree. ", f.stretches)) (impact(f)) }
+            p { (explains(f)) (worth(f)) (format!("{:.0} stretches of flight agree. ", f.stretches)) (impact(f)) }
             (rivals(f))
         }
     }
@@ -51,13 +48,24 @@ fn parameter(name: &str, v: &Value) -> Markup {
 }
 
 fn explains(f: &Finding) -> String {
-    let mut shares: Vec<_> = f.explained.iter().filter(|(_, share)| **share >= MENTIONED).collect();
-    shares.sort_by(|a, b| b.1.total_cmp(a.1));
+    let shares = f.mentioned();
     if shares.is_empty() {
         return String::new();
     }
-    let shares = shares.iter().map(|(channel, share)| format!("{:.0} % of {channel}", 100.0 * **share));
+    let shares = shares.iter().map(|(channel, share)| format!("{:.0} % of {channel}", 100.0 * share));
     format!("It explains, of the power of the error, {}. ", shares.collect::<Vec<_>>().join(", "))
+}
+
+/// What leaving it out costs where it was not fitted.
+fn worth(f: &Finding) -> String {
+    f.gain.get(f.channel).map_or(String::new(), |g| {
+        let (before, after) = (digits(g.before, g.before, 3), digits(g.after, g.after, 3));
+        format!(
+            "On flight not used for fitting, {} is {before} {} off without it and {after} with it. ",
+            f.channel,
+            unit(g.unit)
+        )
+    })
 }
 
 fn impact(f: &Finding) -> String {

@@ -83,6 +83,13 @@ impl Sensors {
         let calibrated = |v: Vector3<f64>, sd: f64| v.map(|x| (x / noise).clamp(-1.5 * sd, 1.5 * sd));
         let (gyro, force) = (sensors.normal(GYRO[1]), sensors.normal(ACCELEROMETER[1]));
         (sensors.gyro_bias, sensors.force_bias) = (calibrated(gyro, GYRO[1]), calibrated(force, ACCELEROMETER[1]));
+        // A hidden bias is all there is, or its truth would not be known.
+        if world.terms.gyro_bias != Vector3::zeros() {
+            sensors.gyro_bias = Vector3::zeros();
+        }
+        if world.terms.accel_bias != Vector3::zeros() {
+            sensors.force_bias = Vector3::zeros();
+        }
         sensors
     }
 
