@@ -5,7 +5,7 @@ use super::fit::{Point, covariance};
 use super::gram::{Grams, inverse, score};
 use super::horizon;
 use super::model::{TAU, span};
-use super::predict::CHANNELS;
+use super::predict::{CHANNELS, kind};
 use super::problem::{Problem, Values};
 use super::select::{Added, Selection};
 use super::structure::NAMES;
@@ -151,10 +151,14 @@ impl<'a> Judge<'a> {
             }
             let before: Vec<f64> = residual[c].iter().zip(&change[c]).map(|(r, d)| r + d).collect();
             let share = 1.0 - power(&residual[c]) / power(&before).max(1e-300);
+            // What other channels gain is the base's, which is free to serve them.
+            if !card.channels.contains(&kind(c)) {
+                continue;
+            }
             if share > 1e-3 {
                 explained.insert(NAMES[c].0, share);
             }
-            if share > most.0 {
+            if share > most.0 || most.1.is_empty() {
                 most = (share, NAMES[c].0);
             }
         }

@@ -6,7 +6,7 @@ use crate::dynamics::Parameters;
 use crate::dynamics::attitude::{Quaternion, body_axes, compose, dot, normalized, small_rotation};
 use crate::dynamics::battery::discharged;
 use crate::dynamics::extended::{self, Moment};
-use crate::effects::{self, Sensed};
+use crate::effects::{self, Channel, Sensed};
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::period;
 use crate::lane::{Kernel, Lane32, Level, build, dispatch};
@@ -22,6 +22,11 @@ pub const FORCE: usize = 3;
 pub const TURN: usize = 6;
 pub const PUSH: usize = 9;
 pub const VOLTAGE: usize = 12;
+
+/// What a channel compares.
+pub fn kind(channel: usize) -> Channel {
+    [Channel::Rate, Channel::Force, Channel::Turn, Channel::Push, Channel::Voltage][channel / 3]
+}
 
 /// One flight, predicted; every stage is kept and shared, so that a number late in the chain is cheap to change.
 #[derive(Clone, Debug, Default)]
