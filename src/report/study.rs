@@ -1,0 +1,67 @@
+//! A study as figures and as one page that needs nothing else.
+
+mod bands;
+mod learning;
+mod marks;
+mod ranked;
+mod tables;
+
+use super::page;
+use crate::study::curves::Curves;
+use crate::study::results::Results;
+use maud::{PreEscaped, html};
+
+/// Settings that figures of curves tell apart; more would need more colours than are told apart.
+const SHOWN: usize = 6;
+
+/// A figure and what it shows.
+pub struct Figure {
+    /// File name without ending.
+    pub name: &'static str,
+    pub caption: String,
+    pub svg: String,
+}
+
+/// All figures of a study with a finished run.
+pub fn figures(results: &Results, curves: &Curves) -> anyhow::Result<Vec<Figure>> {
+    Ok(vec![ranked::figure(results)?, learning::figure(results, curves)?, bands::completion(results, curves)?,
+        bands::learning(results, curves)?])
+}
+
+/// The best settings: places in the plan.
+fn best(results: &Results) -> Vec<usize> {
+    let place = |name: &str| results.plan.settings.iter().position(|setting| setting.name == name);
+    results.ranking.iter().take(SHOWN).filter_map(|ranked| place(&ranked.setting)).collect()
+}
+
+/// The page as HTML.
+pub fn page(results: &Results, figures: &[Figure]) -> String {
+    const STYLE: &str = "figure{margin:1.5em 0}figcaption{color:#555}code{font-size:.9em}td.text{text-align:left}
+.wide{overflow-x:auto}dt{font-weight:bold}dd{margin:0 0 .5em 1.5em;color:#333}";
+    let plan = &results.plan;
+    let budget = match (plan.minutes, plan.steps) {
+        (Some(minutes), _) => format!("{minutes} minutes"),
+        (None, steps) => format!("{:.1} million steps", steps.unwrap_or_default() as f64 / 1e6),
+    };
+    let counts = format!(
+        "{} of {} runs of {budget} each, {} settings; made by racer {}.",
+        results.finished(),
+        results.runs.len(),
+        plan.settings.len(),
+        env!("CARGO_PKG_VERSION")
+    );
+    let body = html! {
+        h1 { "Study " (plan.study) }
+        p { (counts) }
+        (tables::ranking(results))
+        @for figure in figures {
+            figure id=(figure.name) { (PreEscaped(&figure.svg)) figcaption { (figure.caption) } }
+        }
+        (tables::axes(results))
+        (tables::settings(results))
+        (tables::runs(results))
+        h2 { "How the numbers were made" }
+        dl { @for (name, text) in results.methods() { dt { (name) } dd { (text) } } }
+    };
+    page::page(&format!("Study {}", plan.study), STYLE, body)
+}
