@@ -15,6 +15,7 @@
 //! With a budget of steps all but `timing.csv` repeat byte for byte, however often the study was interrupted.
 
 pub mod axes;
+pub mod bands;
 pub mod curves;
 pub mod file;
 pub mod folder;

@@ -186,10 +186,16 @@ fn shards_and_kills_leave_the_same_tables() {
     assert_eq!(std::fs::read(folder.path().join("all.json")).unwrap(), expected["results.json"]);
     let document: Value = serde_json::from_slice(&expected["results.json"]).unwrap();
     assert_eq!((document["finished"].as_u64(), document["ranking"].as_array().unwrap().len()), (Some(4), 2));
-    assert!(document["ranking"][0]["best"].is_number() && document["settings"][1]["metrics"]["top_speed_m_s"]["n"] == 2);
+    assert!(
+        document["ranking"][0]["best"].is_number() && document["settings"][1]["metrics"]["top_speed_m_s"]["n"] == 2
+    );
     let table = String::from_utf8(expected["runs.csv"].clone()).unwrap();
     assert!(table.starts_with("run,setting,rollout,seed,fixed_completion,"), "{table}");
-    assert!(table.contains("\nrollout=32,seed=2,rollout=32,32,2,") || table.contains("\"rollout=32,seed=2\",rollout=32,32,2,"), "{table}");
+    assert!(
+        table.contains("\nrollout=32,seed=2,rollout=32,32,2,")
+            || table.contains("\"rollout=32,seed=2\",rollout=32,32,2,"),
+        "{table}"
+    );
     assert!(whole.out.contains("4 of 4 runs") && whole.out.contains("rollout=16"), "{}", whole.out);
 
     let shard = |k: &str| racer(folder.path(), &["study", "tiny.toml", "--out", "shared", "--shard", k]);
@@ -213,7 +219,7 @@ fn shards_and_kills_leave_the_same_tables() {
             .unwrap();
         let work = || std::fs::read_dir(killed.join(".work")).into_iter().flatten().flatten().count();
         while runs(&killed).len() < done || work() == 0 {
-            assert!(child.try_wait().unwrap().is_none() || runs(&killed).len() == 4);
+            assert!(child.try_wait().unwrap().is_none(), "it ended before it could be killed");
             std::thread::sleep(std::time::Duration::from_millis(1));
         }
         child.kill().unwrap();

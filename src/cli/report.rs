@@ -21,7 +21,8 @@ pub struct Args {
     out: Option<PathBuf>,
 }
 
-const HELP: &str = "The page, report.html, needs nothing beside it; the figures in it are there as SVG files, too. A study under \
+const HELP: &str =
+    "The page, report.html, needs nothing beside it; the figures in it are there as SVG files, too. A study under \
 way is drawn as far as it is.
 
 Example:

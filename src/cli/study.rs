@@ -95,8 +95,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         work::work(&Work { planned: &planned, folder: &folder, shard, jobs, threads })?
     };
 
-    let results = folder.results()?;
-    folder.write_tables(&results)?;
+    let results = folder.write_tables()?;
     if let Some(json) = json {
         json.write((tables::json(&results)? + "\n").as_bytes())?;
     }
@@ -110,7 +109,8 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
 fn share(args: &Args, study: &Study) -> Result<(usize, usize), BadInput> {
     let (all, jobs) = (args.threads.unwrap_or_else(processors), args.jobs.unwrap_or(study.jobs));
     if jobs > all {
-        let advice = "give --jobs; a run that shares its processor with another one would be trained less than they say";
+        let advice =
+            "give --jobs; a run that shares its processor with another one would be trained less than they say";
         return Err(BadInput::new("jobs", jobs, &format!("at most {all}, the processors there are"), advice));
     }
     Ok((jobs, all / jobs))

@@ -30,7 +30,8 @@ impl Claim {
         let prefix = format!("{name}.work-");
         for entry in fs::read_dir(at)?.flatten() {
             if entry.file_name().to_string_lossy().starts_with(&prefix) {
-                fs::remove_dir_all(entry.path())?;
+                // One that a dying process still writes to goes next time.
+                let _ = fs::remove_dir_all(entry.path());
             }
         }
         let mut builder = tempfile::Builder::new();

@@ -24,8 +24,12 @@ pub struct Figure {
 
 /// All figures of a study with a finished run.
 pub fn figures(results: &Results, curves: &Curves) -> anyhow::Result<Vec<Figure>> {
-    Ok(vec![ranked::figure(results)?, learning::figure(results, curves)?, bands::completion(results, curves)?,
-        bands::learning(results, curves)?])
+    Ok(vec![
+        ranked::figure(results)?,
+        learning::figure(results, curves)?,
+        bands::completion(results, curves)?,
+        bands::learning(results, curves)?,
+    ])
 }
 
 /// The best settings: places in the plan.
@@ -37,16 +41,13 @@ fn best(results: &Results) -> Vec<usize> {
 /// The page as HTML.
 pub fn page(results: &Results, figures: &[Figure]) -> String {
     const STYLE: &str = "figure{margin:1.5em 0}figcaption{color:#555}code{font-size:.9em}td.text{text-align:left}
-.wide{overflow-x:auto}dt{font-weight:bold}dd{margin:0 0 .5em 1.5em;color:#333}";
+.wide{overflow-x:auto}.wide table{font-size:.8em}.wide td{white-space:nowrap}.wide td,.wide th{padding:.2em .5em}dt{font-weight:bold}dd{margin:0 0 .5em 1.5em;color:#333}";
     let plan = &results.plan;
-    let budget = match (plan.minutes, plan.steps) {
-        (Some(minutes), _) => format!("{minutes} minutes"),
-        (None, steps) => format!("{:.1} million steps", steps.unwrap_or_default() as f64 / 1e6),
-    };
     let counts = format!(
-        "{} of {} runs of {budget} each, {} settings; made by racer {}.",
+        "{} of {} runs of {} each, {} settings; made by racer {}.",
         results.finished(),
         results.runs.len(),
+        plan.budget(),
         plan.settings.len(),
         env!("CARGO_PKG_VERSION")
     );

@@ -80,7 +80,9 @@ pub fn cells(study: &Study, axes: &[Axis]) -> Result<Vec<Cell>, Invalid> {
     let cells: Vec<Cell> = cells.collect();
     let twice = cells.iter().enumerate().find(|(i, cell)| cells[..*i].iter().any(|other| other.name == cell.name));
     match twice {
-        Some((_, cell)) => Err(Invalid::new("grid", format!("{} twice", cell.name), "different settings", "take one out")),
+        Some((_, cell)) => {
+            Err(Invalid::new("grid", format!("{} twice", cell.name), "different settings", "take one out"))
+        }
         None => Ok(cells),
     }
 }
@@ -108,14 +110,17 @@ fn check_levels(axis: &Axis) -> Result<(), Invalid> {
     Invalid::unless(!levels.is_empty(), name, "nothing", "at least one value", "add one, or take the key out")?;
     let twice = levels.iter().enumerate().find(|(i, level)| levels[..*i].iter().any(|l| l.label == level.label));
     match twice {
-        Some((_, level)) => Err(Invalid::new(name, format!("{} twice", level.label), "different values", "take one out")),
+        Some((_, level)) => {
+            Err(Invalid::new(name, format!("{} twice", level.label), "different values", "take one out"))
+        }
         None => Ok(()),
     }
 }
 
 /// No key is set in two places, and none that the study sets itself.
 fn check_keys(study: &Study, axes: &[Axis]) -> Result<(), Invalid> {
-    let mut seen: Vec<(String, String)> = study.agents.iter().map(|_| ("eval.agents".into(), "agents".into())).collect();
+    let mut seen: Vec<(String, String)> =
+        study.agents.iter().map(|_| ("eval.agents".into(), "agents".into())).collect();
     let mut sets = vec![("set".to_string(), flat(&study.set))];
     for axis in axes {
         let mut keys: Vec<(String, Value)> = axis.levels.iter().flat_map(|level| level.settings.clone()).collect();

@@ -114,7 +114,13 @@ impl Check for Study {
             return Err(Invalid::new("steps", "both", "either minutes or steps", "remove one"));
         }
         let share = self.section_share;
-        Invalid::unless(share > 0.0 && share <= 1.0, "section_share", share, "above 0, at most 1", "the paper has 0.1")?;
+        Invalid::unless(
+            share > 0.0 && share <= 1.0,
+            "section_share",
+            share,
+            "above 0, at most 1",
+            "the paper has 0.1",
+        )?;
         Invalid::unless((1..=1024).contains(&self.jobs), "jobs", self.jobs, "1 to 1024", "1 runs one after the other")
     }
 }

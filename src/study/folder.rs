@@ -34,7 +34,9 @@ impl Folder {
             // Hidden files are another part of the study about to write the plan.
             if entries.any(|entry| !entry.file_name().to_string_lossy().starts_with('.')) || path.is_file() {
                 let expected = "a study's folder, or one that is new or empty";
-                return Err(BadInput::new(path.display(), "something else", expected, "choose another path (--out)").into());
+                return Err(
+                    BadInput::new(path.display(), "something else", expected, "choose another path (--out)").into()
+                );
             }
         }
         for (run, (_, setup)) in planned.plan.runs.iter().zip(&planned.runs) {
@@ -47,9 +49,12 @@ impl Folder {
 
     /// Writes plan and study file, in place of those of an earlier start.
     pub fn begin(&self, plan: &Plan, study: &str) -> anyhow::Result<()> {
-        let failed = |error| BadInput::new(self.path.display(), error, "a folder that can be written to", "choose another path (--out)");
+        let failed = |error| {
+            BadInput::new(self.path.display(), error, "a folder that can be written to", "choose another path (--out)")
+        };
         std::fs::create_dir_all(&self.path).map_err(failed)?;
-        fsio::replace(&self.path.join(PLAN), (serde_json::to_string_pretty(plan)? + "\n").as_bytes()).map_err(failed)?;
+        fsio::replace(&self.path.join(PLAN), (serde_json::to_string_pretty(plan)? + "\n").as_bytes())
+            .map_err(failed)?;
         fsio::replace(&self.path.join(STUDY), study.as_bytes()).map_err(failed)?;
         std::fs::create_dir_all(self.path.join(RUNS)).map_err(failed)?;
         Ok(())
@@ -82,14 +87,21 @@ impl Folder {
         Ok(Results::new(plan, runs))
     }
 
-    /// Writes the tables, in place of earlier ones.
-    pub fn write_tables(&self, results: &Results) -> anyhow::Result<()> {
-        for (name, bytes) in tables::files(results)? {
-            let path = self.path.join(name);
-            fsio::replace(&path, &bytes)
-                .map_err(|error| anyhow::anyhow!("{} could not be written: {error}", path.display()))?;
+    /// Writes the tables of all that is finished, in place of earlier ones.
+    pub fn write_tables(&self) -> anyhow::Result<Results> {
+        loop {
+            let results = self.results()?;
+            for (name, bytes) in tables::files(&results)? {
+                let path = self.path.join(name);
+                fsio::replace(&path, &bytes)
+                    .map_err(|error| anyhow::anyhow!("{} could not be written: {error}", path.display()))?;
+            }
+            // Another process may have finished a run in the meantime, and have written its tables before these.
+            let finished = results.plan.runs.iter().filter(|run| self.finished(&run.name)).count();
+            if finished == results.finished() {
+                return Ok(results);
+            }
         }
-        Ok(())
     }
 }
 

@@ -64,6 +64,17 @@ pub struct Budget {
     pub steps: Option<u64>,
 }
 
+impl Plan {
+    /// Budget of each run, in words.
+    pub fn budget(&self) -> String {
+        match (self.minutes, self.steps.unwrap_or_default()) {
+            (Some(minutes), _) => format!("{minutes} minutes"),
+            (None, steps) if steps < 100_000 => format!("{steps} steps"),
+            (None, steps) => format!("{:.1} million steps", steps as f64 / 1e6),
+        }
+    }
+}
+
 /// Spans the grid, resolves and checks every run of `study`, which `document` holds. `argument` names the study.
 pub fn plan(argument: &str, document: &Document, study: &Study, budget: Budget) -> Result<Planned, BadInput> {
     let blame = |invalid: Invalid| document.blame(invalid);
@@ -100,16 +111,17 @@ pub fn plan(argument: &str, document: &Document, study: &Study, budget: Budget) 
         axes: axes.into_iter().map(|axis| axis.name).collect(),
         settings: cells.into_iter().map(described).collect(),
         runs: planned,
-        same_reward: setups.iter().all(|setup| {
-            setup.config.env.reward == first.config.env.reward && setup.track == first.track
-        }),
+        same_reward: setups
+            .iter()
+            .all(|setup| setup.config.env.reward == first.config.env.reward && setup.track == first.track),
     };
     Ok(Planned { plan, config: study.config.clone(), runs })
 }
 
 /// What a run sets, in the order in which it counts.
 fn settings(document: &Document, study: &Study, cell: &Cell, seed: Option<u64>, budget: Budget) -> Vec<Setting> {
-    let own = |key: &str, to: &str, value: toml::Value| Setting { key: to.into(), value, option: document.place_of(key) };
+    let own =
+        |key: &str, to: &str, value: toml::Value| Setting { key: to.into(), value, option: document.place_of(key) };
     let mut all: Vec<Setting> = Vec::new();
     all.extend(study.agents.map(|agents| own("agents", "eval.agents", (agents as i64).into())));
     for (key, value) in &cell.settings {

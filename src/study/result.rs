@@ -104,14 +104,17 @@ mod tests {
         };
         let (fixed, random) = (benchmark(fixed, 1.0), benchmark(0.0, ladder));
         let seconds = steps as f64;
-        serde_json::from_value(json!({"snapshot": "", "steps": steps, "seconds": seconds, "fixed": fixed, "random": random}))
-            .unwrap()
+        serde_json::from_value(
+            json!({"snapshot": "", "steps": steps, "seconds": seconds, "fixed": fixed, "random": random}),
+        )
+        .unwrap()
     }
 
     #[test]
     fn firsts_and_the_best() {
         let about = About { run: "a,seed=1", setting: "a", seed: 1, threads: 2 };
-        let run = [(10, 0.2, 0.05), (20, 0.95, 0.1), (30, 1.0, 0.4), (40, 0.9, 0.0)].map(|(s, f, l)| evaluated(s, f, l));
+        let run =
+            [(10, 0.2, 0.05), (20, 0.95, 0.1), (30, 1.0, 0.4), (40, 0.9, 0.0)].map(|(s, f, l)| evaluated(s, f, l));
         let result = summarised(&run, &about, 0.1).unwrap();
         assert_eq!((result.ready.unwrap().steps, result.best.steps, result.trained.steps), (20, 30, 40));
         assert_eq!((result.fixed.lap_completion, result.sections[0].first.unwrap().steps), (1.0, 20));

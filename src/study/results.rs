@@ -2,11 +2,10 @@
 
 use super::metric::{Metric, metrics};
 use super::plan::Plan;
-use super::ranking::{self, Ranked, Scored, ranking};
+use super::ranking::{self, NO_LAP_S, Ranked, Scored, ranking};
 use super::result::RunResult;
 use super::summary::Summary;
 use crate::eval::choose::DEPLOYABLE;
-use crate::stats;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -67,10 +66,11 @@ impl Results {
             axes.clear();
         }
         let scored = plan.settings.iter().enumerate().map(|(i, setting)| {
-            let finished = || plan.runs.iter().zip(&runs).filter(|(run, _)| run.setting == i).filter_map(|(_, r)| r.as_ref());
-            let gates: Vec<f64> = finished().map(|run| run.fixed.gates_passed.mean).collect();
-            let scores = finished().map(|run| run.fixed.lap_completion).collect();
-            Scored { name: setting.name.clone(), scores, tie: stats::mean(&gates) }
+            let finished =
+                || plan.runs.iter().zip(&runs).filter(|(run, _)| run.setting == i).filter_map(|(_, r)| r.as_ref());
+            let lap_s = |run: &RunResult| run.fixed.lap_time_s.map_or(NO_LAP_S, |time| time.median);
+            let score = |run: &RunResult| [run.fixed.lap_completion, -lap_s(run), run.fixed.gates_passed.mean];
+            Scored { name: setting.name.clone(), scores: finished().map(score).collect() }
         });
         let ranking = ranking(scored.collect());
         Self { plan, metrics, runs, settings, axes, ranking }
@@ -96,14 +96,35 @@ impl Results {
     pub fn methods(&self) -> Vec<(&'static str, String)> {
         let share = 100.0 * self.plan.section_share;
         vec![
-            ("best snapshot", "The one with the highest fixed-start lap completion; of equals the one with the shortest \
-                median lap, then with most gates passed, then the latest. All metrics of a run are its best snapshot's.".into()),
-            ("ready", format!("The first snapshot with which {:.0} % of the fixed-start agents complete a lap.", 100.0 * DEPLOYABLE)),
-            ("sections", format!("The first snapshot with which {share:.0} % of the random-start agents pass the section.")),
-            ("action_change_sq, saturated_share", "Mean |a_t - a_(t-1)|^2 and share of |a| > 0.95 over the first four seconds \
-                from the pad, all agents while they fly.".into()),
-            ("intervals", "95 % of the mean over the seeds, by Student's t, shares kept within 0 to 1; n is the number of runs \
-                that have the metric.".into()),
+            (
+                "best snapshot",
+                "The one with the highest fixed-start lap completion; of equals the one with the shortest \
+                median lap, then with most gates passed, then the latest. All metrics of a run are its best snapshot's."
+                    .into(),
+            ),
+            (
+                "ready",
+                format!(
+                    "The first snapshot with which {:.0} % of the fixed-start agents complete a lap.",
+                    100.0 * DEPLOYABLE
+                ),
+            ),
+            (
+                "sections",
+                format!("The first snapshot with which {share:.0} % of the random-start agents pass the section."),
+            ),
+            (
+                "action_change_sq, saturated_share",
+                "Mean |a_t - a_(t-1)|^2 and share of |a| > 0.95 over the first four seconds \
+                from the pad, all agents while they fly."
+                    .into(),
+            ),
+            (
+                "intervals",
+                "95 % of the mean over the seeds, by Student's t, shares kept within 0 to 1; n is the number of runs \
+                that have the metric."
+                    .into(),
+            ),
             ("ranking", ranking::METHOD.into()),
         ]
     }

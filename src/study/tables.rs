@@ -47,7 +47,9 @@ fn groups(results: &Results, axes: &[(String, Vec<Group>)]) -> anyhow::Result<Ve
     for (axis, groups) in axes {
         for group in groups {
             for metric in results.shown() {
-                let Some(Summary { n, mean, sd, min, max, interval }) = group.metrics.get(&metric.name) else { continue };
+                let Some(Summary { n, mean, sd, min, max, interval }) = group.metrics.get(&metric.name) else {
+                    continue;
+                };
                 let [low, high] = interval.map_or([None; 2], |ends| ends.map(Some));
                 let numbers = [Some(*mean), *sd, Some(*min), Some(*max), low, high].map(cell);
                 let names = [axis.clone(), group.name.clone(), metric.name.clone(), n.to_string()];

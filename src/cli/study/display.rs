@@ -10,13 +10,12 @@ use std::time::{Duration, Instant};
 pub struct Display {
     bars: Option<(MultiProgress, ProgressBar)>,
     total: usize,
-    jobs: usize,
     started: Instant,
 }
 
 impl Display {
-    /// Of `total` runs, `jobs` of them at a time.
-    pub fn new(total: usize, jobs: usize) -> Self {
+    /// Of `total` runs.
+    pub fn new(total: usize) -> Self {
         let bars = std::io::stderr().is_terminal().then(|| {
             let style = ProgressStyle::with_template("{bar:24} {pos} of {len} runs  {wide_msg}");
             let all = MultiProgress::new();
@@ -25,7 +24,7 @@ impl Display {
             bar.tick();
             (all, bar)
         });
-        Self { bars, total, jobs, started: Instant::now() }
+        Self { bars, total, started: Instant::now() }
     }
 
     /// The line of a run that begins.
@@ -47,9 +46,8 @@ impl Display {
     /// A run has ended, the `done`th; `remark` says how.
     pub fn end(&self, line: Line, done: usize, remark: &str) {
         let elapsed = self.started.elapsed();
-        // Runs of one budget take about equally long, and the last of several jobs end together.
-        let left = (self.total - done).div_ceil(self.jobs) as f64 * elapsed.as_secs_f64() * self.jobs as f64;
-        let left = format!("{} left", clock(left / (done.max(1).next_multiple_of(self.jobs)) as f64));
+        let left = elapsed.as_secs_f64() / done.max(1) as f64 * (self.total - done) as f64;
+        let left = format!("{} left", clock(left));
         if let Some(bar) = line.0 {
             bar.finish_and_clear();
         }

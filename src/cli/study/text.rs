@@ -7,19 +7,16 @@ use crate::study::summary::Summary;
 /// All tables.
 pub fn results(results: &Results) -> String {
     let plan = &results.plan;
-    let budget = match (plan.minutes, plan.steps) {
-        (Some(minutes), _) => format!("{minutes} minutes"),
-        (None, steps) => format!("{:.1} M steps", steps.unwrap_or_default() as f64 / 1e6),
-    };
     let (finished, all) = (results.finished(), results.runs.len());
-    let mut text = format!("{}: {finished} of {all} runs of {budget} each\n\n{}", plan.study, ranked(results));
+    let mut text = format!("{}: {finished} of {all} runs of {} each\n\n{}", plan.study, plan.budget(), ranked(results));
     for (axis, levels) in &results.axes {
         text += &format!("\n\n{}", groups(axis, levels));
     }
     let best = results.ranking.iter().any(|place| place.best.is_some());
     text += "\n\nlaps: share of fixed-start agents that complete a lap with a run's best snapshot, mean over seeds (95 %, Student's t).";
     if best {
-        text += "\nbest, ranks: share of 10000 draws of the seeds in which a setting is best; 95 % of its ranks in them.";
+        text +=
+            "\nbest, ranks: share of 10000 draws of the seeds in which a setting is best; 95 % of its ranks in them.";
     }
     text
 }
@@ -58,7 +55,7 @@ fn ranked(results: &Results) -> String {
         let mut row = vec![place.rank.to_string(), place.setting.clone()];
         row.extend(cells(group));
         row.push(place.best.map_or("-".into(), |best| format!("{:.0}", 100.0 * best)));
-        row.push(place.ranks.map_or("-".into(), |[low, high]| format!("{low:.0} - {high:.0}")));
+        row.push(place.ranks.map_or("-".into(), |[low, high]| format!("{low} - {high}")));
         Some(row)
     });
     columns::table(&header, rows.collect(), 2..header.len())

@@ -49,7 +49,7 @@ pub fn work(work: &Work) -> anyhow::Result<Ended> {
     if missing.is_empty() {
         return Ok(Ended::default());
     }
-    let display = Display::new(missing.len(), work.jobs);
+    let display = Display::new(missing.len());
     let (next, done, ended) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::new(Ended::default()));
     std::thread::scope(|scope| {
         for _ in 0..work.jobs.min(missing.len()) {
@@ -57,7 +57,8 @@ pub fn work(work: &Work) -> anyhow::Result<Ended> {
                 while let Some(&run) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let name = &work.planned.plan.runs[run].name;
                     let line = display.begin(name);
-                    let made = make(work, run, &|text| line.show(text)).unwrap_or_else(|e| Made::Failed(format!("{e:#}")));
+                    let made =
+                        make(work, run, &|text| line.show(text)).unwrap_or_else(|e| Made::Failed(format!("{e:#}")));
                     let remark = format!("{name} {}", remark(&made));
                     display.end(line, done.fetch_add(1, Ordering::Relaxed) + 1, &remark);
                     if let Ok(mut ended) = ended.lock() {

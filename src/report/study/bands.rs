@@ -6,7 +6,8 @@ use super::{Figure, best};
 use crate::eval::choose::DEPLOYABLE;
 use crate::report::drawing;
 use crate::report::plot::{self, Area};
-use crate::study::curves::{Band, Curve, Curves, Over, band};
+use crate::study::bands::{Band, band};
+use crate::study::curves::{At, Curve, Curves, Over};
 use crate::study::results::Results;
 use plotters::prelude::*;
 
@@ -34,7 +35,7 @@ snapshot with which {:.0} % of random-start agents pass a section.",
 struct What<'a> {
     name: &'static str,
     axis: &'a str,
-    of: fn(&Curve) -> &[crate::study::curves::At],
+    of: fn(&Curve) -> &[At],
 }
 
 fn draw(
@@ -56,7 +57,9 @@ fn draw(
         lines: minutes.iter().enumerate().map(name).collect(),
         shapes: names.map(|(i, section)| (marks::section(i), format!("passes the {section}"))).collect(),
     };
-    let y = range.unwrap_or_else(|| plot::range(minutes.iter().flat_map(|b| &b.points).flat_map(|(_, quartiles)| *quartiles)));
+    let y = range.unwrap_or_else(|| {
+        plot::range(minutes.iter().chain(&steps).flat_map(|b| &b.points).flat_map(|(_, quartiles)| *quartiles))
+    });
     let svg = plot::svg(key.height() as u32 + 2 * PANEL, |root| {
         let (names, panels) = root.split_vertically(key.height());
         key.draw(&names)?;
@@ -85,7 +88,7 @@ fn panel(area: &Area, bands: &[Band], axes: [&str; 2], y: std::ops::Range<f64>, 
         let median = band.points.iter().map(|(x, quartiles)| (*x, quartiles[1]));
         plot::line(&mut chart, median, marks::colour(i).stroke_width(3))?;
         for (s, at) in band.sections.iter().enumerate().filter(|_| sections).filter_map(|(s, at)| Some((s, (*at)?))) {
-            marks::draw(&mut chart, at, &marks::section(s), marks::colour(i))?;
+            marks::draw(&mut chart, at, &marks::section(s), [marks::colour(i), BLACK])?;
         }
     }
     if !sections {

@@ -10,8 +10,9 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 const PANEL: u32 = 400;
-/// Runs that are not among the best.
-const OTHERS: RGBColor = RGBColor(205, 205, 205);
+/// Runs that are not among the best, and their stars.
+const OTHERS: RGBColor = RGBColor(210, 210, 210);
+const DARKER: RGBColor = RGBColor(165, 165, 165);
 
 /// Over time above, over steps below.
 pub fn figure(results: &Results, curves: &Curves) -> anyhow::Result<Figure> {
@@ -61,22 +62,23 @@ fn panel(area: &Area, curves: &Curves, shown: &[&Curve], over: Over) -> anyhow::
     let line = |curve: &Curve| curve.learning.iter().map(|at| (over.x(at), at.value)).collect::<Vec<_>>();
     for curve in curves.runs.iter().filter(|curve| shown.iter().all(|s| s.run != curve.run)) {
         plot::line(&mut chart, line(curve), OTHERS.stroke_width(1))?;
-        marks::draw(&mut chart, (over.x(&curve.best), curve.best.value), &marks::star(4.0), OTHERS)?;
+        marks::draw(&mut chart, (over.x(&curve.best), curve.best.value), &marks::star(4.0), [DARKER; 2])?;
     }
     // The best on top.
     for (i, curve) in shown.iter().enumerate().rev() {
         plot::line(&mut chart, line(curve), marks::colour(i).stroke_width(2))?;
         if let Some(last) = curve.learning.last() {
-            let font = ("sans-serif", TEXT).into_font().color(&marks::colour(i)).pos(Pos::new(HPos::Left, VPos::Center));
+            let font =
+                ("sans-serif", TEXT).into_font().color(&marks::colour(i)).pos(Pos::new(HPos::Left, VPos::Center));
             let label = EmptyElement::at((over.x(last), last.value)) + Text::new((i + 1).to_string(), (5, 0), font);
             chart.draw_series([label]).map_err(drawing)?;
         }
     }
     for (i, curve) in shown.iter().enumerate().rev() {
         for (s, at) in curve.sections.iter().enumerate().filter_map(|(s, at)| Some((s, (*at)?))) {
-            marks::draw(&mut chart, (over.x(&at), at.value), &marks::section(s), marks::colour(i))?;
+            marks::draw(&mut chart, (over.x(&at), at.value), &marks::section(s), [marks::colour(i), BLACK])?;
         }
-        marks::draw(&mut chart, (over.x(&curve.best), curve.best.value), &marks::star(9.0), marks::colour(i))?;
+        marks::draw(&mut chart, (over.x(&curve.best), curve.best.value), &marks::star(9.0), [marks::colour(i), BLACK])?;
     }
     Ok(())
 }

@@ -43,10 +43,15 @@ pub fn star(radius: f64) -> Vec<(i32, i32)> {
     (0..10).map(corner).collect()
 }
 
-/// Draws a shape at a point of a chart, filled, with a thin black edge.
-pub fn draw(chart: &mut On<Linear, Linear>, at: (f64, f64), shape: &[(i32, i32)], fill: RGBColor) -> anyhow::Result<()> {
-    let edge: Vec<_> = shape.iter().chain(shape.first()).copied().collect();
-    let mark = EmptyElement::at(at) + Polygon::new(shape.to_vec(), fill.filled()) + PathElement::new(edge, BLACK);
+/// Draws a shape at a point of a chart, filled, with a thin edge.
+pub fn draw(
+    chart: &mut On<Linear, Linear>,
+    at: (f64, f64),
+    shape: &[(i32, i32)],
+    [fill, edge]: [RGBColor; 2],
+) -> anyhow::Result<()> {
+    let around: Vec<_> = shape.iter().chain(shape.first()).copied().collect();
+    let mark = EmptyElement::at(at) + Polygon::new(shape.to_vec(), fill.filled()) + PathElement::new(around, edge);
     chart.draw_series([mark]).map_err(drawing)?;
     Ok(())
 }

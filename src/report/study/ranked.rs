@@ -31,6 +31,7 @@ pub fn figure(results: &Results) -> anyhow::Result<Figure> {
             .light_line_style(TRANSPARENT)
             .bold_line_style(BLACK.mix(0.08))
             .label_style(("sans-serif", TEXT))
+            .x_label_formatter(&|x| format!("{x:.0}"))
             .x_desc("fixed starts that complete a lap, %")
             .disable_y_mesh()
             .y_labels(0)
@@ -54,11 +55,11 @@ pub fn figure(results: &Results) -> anyhow::Result<Figure> {
             chart.draw_series([bar]).map_err(drawing)?;
             let font = |side| ("sans-serif", TEXT).into_font().color(&BLACK).pos(Pos::new(side, VPos::Center));
             let (x0, y0) = chart.backend_coord(&(0.0, y));
-            let name = format!("{}  {}", place.setting, place.rank);
+            let name = format!("{}. {}", place.rank, place.setting);
             root.draw(&Text::new(name, (x0 - 8, y0), font(HPos::Right))).map_err(drawing)?;
             if let (Some(best), Some([low, high])) = (place.best, place.ranks) {
                 let (x1, _) = chart.backend_coord(&(100.0, y));
-                let text = format!("best {:.0} %, rank {low:.0} to {high:.0}", 100.0 * best);
+                let text = format!("best {:.0} %, rank {low} to {high}", 100.0 * best);
                 root.draw(&Text::new(text, (x1 + 12, y0), font(HPos::Left))).map_err(drawing)?;
             }
         }

@@ -23,7 +23,7 @@ pub fn ranking(results: &Results) -> Markup {
         h2 { "Ranking" }
         div class="wide" { table {
             tr {
-                th { "setting" } th { "runs" } th { "laps, %" } th { "95 %" } th { "ready" } th { "best, %" } th { "ranks, 95 %" }
+                th { "setting" } th { "runs" } th { "laps, % (95 %)" } th { "ready" } th { "best, %" } th { "ranks, 95 %" }
                 @for (heading, ..) in COLUMNS { th { (heading) } }
             }
             @for place in &results.ranking {
@@ -32,7 +32,7 @@ pub fn ranking(results: &Results) -> Markup {
                         td { (place.rank) ". " (place.setting) }
                         (laps(group))
                         td { (number(place.best.map(|best| 100.0 * best), 0)) }
-                        td { (place.ranks.map_or("-".into(), |[low, high]| format!("{low:.0} to {high:.0}"))) }
+                        td { (place.ranks.map_or("-".into(), |[low, high]| format!("{low} to {high}"))) }
                         (means(group))
                     }
                 }
@@ -49,7 +49,7 @@ pub fn axes(results: &Results) -> Markup {
             p { "Each value's mean over all settings and seeds that have it." }
             @for (axis, levels) in &results.axes {
                 div class="wide" { table {
-                    tr { th { (axis) } th { "runs" } th { "laps, %" } th { "95 %" } th { "ready" } @for (heading, ..) in COLUMNS { th { (heading) } } }
+                    tr { th { (axis) } th { "runs" } th { "laps, % (95 %)" } th { "ready" } @for (heading, ..) in COLUMNS { th { (heading) } } }
                     @for group in levels { tr { td { (group.name) } (laps(group)) (means(group)) } }
                 } }
             }
@@ -61,10 +61,11 @@ fn laps(group: &Group) -> Markup {
     let completion = group.metrics.get("fixed_completion");
     let interval = completion.and_then(|summary| summary.interval);
     let ready = group.metrics.get("ready").map(|s| format!("{:.0} of {}", s.mean * s.n as f64, s.n));
+    let mean = number(completion.map(|summary| 100.0 * summary.mean), 1);
+    let around = interval.map(|[low, high]| format!(" ({:.1} to {:.1})", 100.0 * low, 100.0 * high));
     html! {
         td { (group.finished) }
-        td { (number(completion.map(|summary| 100.0 * summary.mean), 1)) }
-        td { (interval.map_or("-".into(), |[low, high]| format!("{:.1} to {:.1}", 100.0 * low, 100.0 * high))) }
+        td { (mean) (around.unwrap_or_default()) }
         td { (ready.unwrap_or("-".into())) }
     }
 }
