@@ -7,12 +7,17 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 
 /// From now on the first Ctrl-C (or SIGTERM) is answered with `remark` and remembered, and the second ends the process.
 pub fn watch(remark: &'static str) -> Result<(), ctrlc::Error> {
-    ctrlc::set_handler(move || {
+    let watching = ctrlc::set_handler(move || {
         if ASKED.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
         super::tell(&format!("\n{remark}"));
-    })
+    });
+    match watching {
+        // A command that trains twice is watched since the first time.
+        Err(ctrlc::Error::MultipleHandlers) => Ok(()),
+        other => other,
+    }
 }
 
 /// From now on this process ends where its standard input does. A pipe from the process that started it ends with that

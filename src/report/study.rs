@@ -1,6 +1,7 @@
 //! A study as figures and as one page that needs nothing else.
 
 mod bands;
+mod effects;
 mod learning;
 mod marks;
 mod ranked;
@@ -24,12 +25,12 @@ pub struct Figure {
 
 /// All figures of a study with a finished run.
 pub fn figures(results: &Results, curves: &Curves) -> anyhow::Result<Vec<Figure>> {
-    Ok(vec![
-        ranked::figure(results)?,
-        learning::figure(results, curves)?,
-        bands::completion(results, curves)?,
-        bands::learning(results, curves)?,
-    ])
+    let mut figures = vec![ranked::figure(results)?];
+    figures.extend(effects::figure(results)?);
+    figures.push(learning::figure(results, curves)?);
+    figures.push(bands::completion(results, curves)?);
+    figures.push(bands::learning(results, curves)?);
+    Ok(figures)
 }
 
 /// The best settings: places in the plan.
