@@ -149,6 +149,6 @@ fn conclude(args: &Args, out: &Path, ended: &Ended, finished: usize, planned: us
             tell(&format!("figures: racer report {}", out.display()));
             Ok(Outcome::Done)
         }
-        failed => anyhow::bail!("{failed} runs failed, as said above; the same command tries them again"),
+        failed => anyhow::bail!("{failed} of the runs failed, as said above; the same command tries them again"),
     }
 }
