@@ -291,3 +291,45 @@ fn ctrl_c_ends_the_run_and_says_how_to_go_on() {
     assert!(runs(&folder.path().join("runs/tiny")).is_empty());
     assert_eq!(std::fs::read_dir(folder.path().join("runs/tiny/.work")).unwrap().count(), 0);
 }
+
+/// A training that crashes is told, takes nothing along, and is made by the next start.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_crash_takes_nothing_along() {
+    let folder = with_study(&TINY.replace("4000", "60000").replace("seeds = 2", "seeds = 1"));
+    let study = std::process::Command::new(assert_cmd::cargo::cargo_bin("racer"))
+        .current_dir(folder.path())
+        .args(["study", "tiny.toml"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let training = loop {
+        if let Some(child) = child_of(study.id()) {
+            break child;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    };
+    assert!(std::process::Command::new("kill").args(["-KILL", &training.to_string()]).status().unwrap().success());
+    let output = study.wait_with_output().unwrap();
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert!(err.contains("rollout=16,seed=1 failed: signal: 9") && err.contains("tries them again"), "{err}");
+    assert!(String::from_utf8(output.stdout).unwrap().contains("1 of 2 runs"));
+    let again = racer(folder.path(), &["study", "tiny.toml"]);
+    assert!(again.code == 0 && again.err.matches("begins").count() == 1, "{}", again.err);
+    assert!(again.out.contains("2 of 2 runs"), "{}", again.out);
+}
+
+/// A process started by the process `parent`.
+#[cfg(target_os = "linux")]
+fn child_of(parent: u32) -> Option<u32> {
+    let processes = std::fs::read_dir("/proc").unwrap().flatten();
+    let ids = processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    // After the name, which may hold anything, come the state and the parent.
+    let parent_of = |id: &u32| {
+        let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
+        stat.rsplit(')').next()?.split_whitespace().nth(1)?.parse::<u32>().ok()
+    };
+    ids.into_iter().find(|id| parent_of(id) == Some(parent))
+}
