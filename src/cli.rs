@@ -13,6 +13,8 @@ mod import;
 mod interrupt;
 mod pool;
 mod progress;
+mod report;
+mod study;
 mod table;
 mod train;
 
@@ -39,6 +41,8 @@ enum Command {
     Identify(identify::Args),
     Diagnose(diagnose::Args),
     Extend(extend::Args),
+    Study(study::Args),
+    Report(report::Args),
     Bench(bench::Args),
 }
 
@@ -87,6 +91,8 @@ pub fn main() -> ExitCode {
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Extend(args) => extend::run(&args),
         Command::Import(args) => import::run(&args),
+        Command::Study(args) => study::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Bench(args) => bench::run(&args),
     };
     let code = result.map(Outcome::code).unwrap_or_else(|error| {

@@ -43,6 +43,11 @@ impl Document {
         Self::parse(path.display().to_string(), text)
     }
 
+    /// The file as it was written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// The whole content.
     pub fn table(&self) -> &toml::Table {
         &self.table

@@ -1,4 +1,8 @@
-//! Writing files: whole or not at all, and never over what exists.
+//! Writing files: whole or not at all, and never over what exists, unless the program keeps it up to date itself.
+
+mod claim;
+
+pub use claim::Claim;
 
 use crate::check::BadInput;
 use std::io::{self, Write};
@@ -44,6 +48,15 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = temporary(folder_of(path))?;
     file.write_all(bytes)?;
     file.persist_noclobber(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Writes a file that the program keeps up to date, all at once, in place of the one it wrote before. Survives a loss of power.
+pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = temporary(folder_of(path))?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|error| error.error)?;
     Ok(())
 }
 

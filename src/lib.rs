@@ -39,5 +39,6 @@ pub mod peak;
 pub mod report;
 pub mod run;
 pub mod snapshot;
+pub mod study;
 // Arguments, text, exit codes.
 pub mod cli;

@@ -5,6 +5,7 @@ pub mod identification;
 pub mod lap;
 mod page;
 mod plot;
+pub mod study;
 pub mod training;
 
 use plotters::style::RGBColor;

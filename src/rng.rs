@@ -25,6 +25,8 @@ pub enum Stream {
     Pilot = 7,
     /// Noise and bias of recorded flights.
     Sensors = 8,
+    /// Seeds drawn again for the ranking of a study.
+    Bootstrap = 9,
 }
 
 /// The generator's key.

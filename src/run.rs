@@ -12,10 +12,12 @@
 //! | `lap.csv`, `lap.svg` | a flight of the nominal vehicle with it: step by step, and from above |
 //! | `training.svg` | learning curves |
 
+pub mod evaluated;
 pub mod figures;
 mod find;
 pub mod metrics;
 pub mod provenance;
+pub mod resolved;
 pub mod tensorboard;
 
 pub use find::{Found, find};

@@ -1,5 +1,7 @@
 //! Statistics of samples.
 
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
 /// Mean; 0 for no sample.
 pub fn mean(x: &[f64]) -> f64 {
     if x.is_empty() { 0.0 } else { x.iter().sum::<f64>() / x.len() as f64 }
@@ -20,6 +22,20 @@ pub fn median(x: &[f64]) -> f64 {
     let mut x = x.to_vec();
     let middle = x.len() / 2;
     if x.is_empty() { f64::NAN } else { *x.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
+/// Standard deviation, of n samples with n - 1 degrees of freedom; `None` for fewer than two.
+pub fn sd(x: &[f64]) -> Option<f64> {
+    let middle = mean(x);
+    let squares: f64 = x.iter().map(|x| (x - middle).powi(2)).sum();
+    (x.len() > 1).then(|| (squares / (x.len() - 1) as f64).sqrt())
+}
+
+/// Half the width of the `confidence` interval of the mean of normal samples (Student's t); `None` for fewer than two.
+pub fn mean_half_width(x: &[f64], confidence: f64) -> Option<f64> {
+    let sd = sd(x)?;
+    let t = StudentsT::new(0.0, 1.0, (x.len() - 1) as f64).ok()?.inverse_cdf(0.5 + 0.5 * confidence);
+    Some(t * sd / (x.len() as f64).sqrt())
 }
 
 /// Standard deviation of normal samples, from the median of their distances to zero: outliers hardly move it.
@@ -68,6 +84,14 @@ mod tests {
         assert_eq!([0.0, 0.5, 1.0].map(|q| quantile(&x, q)), [1.0, 2.5, 4.0]);
         assert!((quantile(&x, 0.05) - 1.15).abs() < 1e-12);
         assert!(quantile(&[], 0.5).is_nan());
+    }
+
+    #[test]
+    fn intervals_by_hand() {
+        assert_eq!(sd(&[1.0, 2.0, 3.0]), Some(1.0));
+        assert_eq!((sd(&[1.0]), mean_half_width(&[1.0], 0.95)), (None, None));
+        // t of 2 degrees of freedom is 4.3027 at 97.5 %.
+        assert!((mean_half_width(&[1.0, 2.0, 3.0], 0.95).unwrap() - 4.3027 / 3f64.sqrt()).abs() < 1e-4);
     }
 
     #[test]

@@ -262,7 +262,7 @@ fn help_names_the_exit_codes() {
     assert!(ran.code == 0 && ran.out.contains("130") && ran.out.contains("--require"));
     let ran = racer(folder.path(), &["train", "--help"]);
     assert!(ran.out.contains("adam_epsilon") && ran.out.contains("budget"), "all keys are listed: {}", ran.out);
-    for command in ["train", "eval", "fly", "bench"] {
+    for command in ["train", "eval", "fly", "bench", "study", "report"] {
         assert_eq!(racer(folder.path(), &[command, "--help"]).code, 0);
     }
 }

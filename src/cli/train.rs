@@ -12,12 +12,12 @@ use crate::eval::choose::best;
 use crate::eval::{Report, benchmark};
 use crate::lane::Level;
 use crate::ppo::train::{Flow, Iteration, Observer, Trained, train};
+use crate::run::evaluated::{EVALUATED, Evaluated};
 use crate::run::figures::{self, LAP, TRAINING};
 use crate::run::metrics::{Row, to_csv};
 use crate::run::provenance::Provenance;
-use crate::run::{POLICY, Run, SNAPSHOTS, TENSORBOARD, tensorboard};
+use crate::run::{POLICY, Run, SNAPSHOTS, TENSORBOARD, resolved, tensorboard};
 use crate::snapshot::{About, Snapshot};
-use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -52,6 +52,9 @@ pub struct Args {
     /// New folder for the run [default: one below runs/, named by time and track]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// End at once, without saving, when standard input ends: how a study takes its trainings along
+    #[arg(long, hide = true)]
+    attached: bool,
 }
 
 const HELP: &str =
@@ -80,6 +83,7 @@ impl Args {
             steps: None,
             threads: None,
             out: Some(out.into()),
+            attached: false,
         }
     }
 
@@ -101,7 +105,10 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let (level, threads) = (Level::best(), threads(args.threads));
     let run = Run::create(args.out.as_deref(), &setup.track.name)?;
     begin(&run, &setup, &Provenance::now(level, threads))?;
-    interrupt::watch()?;
+    interrupt::watch("Finishing this update and saving; Ctrl-C again ends at once, without saving.")?;
+    if args.attached {
+        interrupt::end_with_standard_input();
+    }
     let Setup { config, track, vehicle } = &setup;
     tell(&format!("{} on {threads} threads, {level}; run folder {}", track.name, run.folder.display()));
 
@@ -123,9 +130,9 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
 fn begin(run: &Run, setup: &Setup, provenance: &Provenance) -> anyhow::Result<()> {
     let quoted = std::env::args_os().map(|word| quote(&word.to_string_lossy())).collect::<Vec<_>>().join(" ");
     run.write("command.txt", quoted + "\n")?;
-    run.write("config.toml", setup.config.to_toml())?;
-    run.write("track.toml", toml::to_string(&setup.track)?)?;
-    run.write("vehicle.toml", toml::to_string(&setup.vehicle)?)?;
+    for (name, content) in resolved::files(setup)? {
+        run.write(name, content)?;
+    }
     run.write("provenance.json", serde_json::to_string_pretty(provenance)? + "\n")?;
     Ok(())
 }
@@ -199,16 +206,6 @@ fn stopped(run: &Run, trained: &Trained) -> anyhow::Result<Outcome> {
     Ok(Outcome::Interrupted)
 }
 
-/// A snapshot's line in `snapshots.json`, and with it `evaluation.json`.
-#[derive(Serialize)]
-struct Entry<'a> {
-    snapshot: &'a str,
-    steps: u64,
-    seconds: f64,
-    #[serde(flatten)]
-    report: &'a Report,
-}
-
 /// Benchmarks all snapshots, keeps the best.
 fn evaluate(
     run: &Run,
@@ -232,10 +229,10 @@ fn evaluate(
     }
     let entries = policies.iter().zip(&reports).map(|((name, policy), report)| {
         let &About { steps, seconds, .. } = &policy.about;
-        Entry { snapshot: name, steps, seconds, report }
+        Evaluated { snapshot: name.clone(), steps, seconds, report: report.clone() }
     });
     let entries: Vec<_> = entries.collect();
-    run.write("snapshots.json", serde_json::to_string_pretty(&entries)? + "\n")?;
+    run.write(EVALUATED, serde_json::to_string_pretty(&entries)? + "\n")?;
     let Some(chosen) = best(&reports) else { anyhow::bail!("the training took no snapshot") };
     run.write(POLICY, policies[chosen].1.to_bytes()?)?;
     run.write("evaluation.json", serde_json::to_string_pretty(&entries[chosen])? + "\n")?;

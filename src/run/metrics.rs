@@ -1,10 +1,12 @@
 //! The training log: one row of named numbers an iteration.
 
+use crate::check::BadInput;
 use crate::env::reward::TERMS;
 use crate::env::tally::Tally;
 use crate::env::terminate::CAUSES;
 use crate::ppo::train::Iteration;
 use crate::stats;
+use std::path::Path;
 use std::time::SystemTime;
 
 /// One iteration's numbers.
@@ -80,9 +82,36 @@ pub fn to_csv(rows: &[Row]) -> anyhow::Result<Vec<u8>> {
     Ok(csv.into_inner()?)
 }
 
+/// Columns of the CSV file at `path` by name, row by row; nothing where a cell is empty.
+pub fn read<const N: usize>(path: &Path, names: [&str; N]) -> Result<Vec<[Option<f64>; N]>, BadInput> {
+    let failed = |found: String| BadInput::new(path.display(), found, "the log of a training, metrics.csv", "");
+    let mut csv = csv::Reader::from_path(path).map_err(|error| failed(error.to_string()))?;
+    let header = csv.headers().map_err(|error| failed(error.to_string()))?.clone();
+    let mut places = [0; N];
+    for (place, name) in places.iter_mut().zip(names) {
+        *place = header.iter().position(|known| known == name).ok_or_else(|| failed(format!("no column `{name}`")))?;
+    }
+    let mut rows = Vec::new();
+    for record in csv.records() {
+        let record = record.map_err(|error| failed(error.to_string()))?;
+        rows.push(places.map(|place| record.get(place).and_then(|cell| cell.parse().ok())));
+    }
+    Ok(rows)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_log_is_read_as_it_was_written() {
+        let values = vec![("a/b".to_string(), 1.5), ("c".to_string(), f64::NAN)];
+        let row = Row { wall: SystemTime::UNIX_EPOCH, steps: 64, values };
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), to_csv(&[row]).unwrap()).unwrap();
+        assert_eq!(read(file.path(), ["c", "steps", "a/b"]).unwrap(), [[None, Some(64.0), Some(1.5)]]);
+        assert!(read(file.path(), ["d"]).unwrap_err().to_string().contains("`d`"));
+    }
 
     #[test]
     fn nothing_to_average_over_is_an_empty_cell() {

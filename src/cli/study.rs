@@ -1,0 +1,154 @@
+//! `racer study`: a grid of settings times seeds, run, resumed, shared among machines, and told in tables.
+
+mod child;
+mod display;
+mod text;
+mod work;
+
+use super::{Outcome, columns, interrupt, tell};
+use crate::check::BadInput;
+use crate::fsio::Reserved;
+use crate::run::RUNS;
+use crate::run::provenance::processors;
+use crate::study::folder::Folder;
+use crate::study::plan::{Budget, Planned, plan};
+use crate::study::shard::Shard;
+use crate::study::{Study, tables};
+use std::path::{Path, PathBuf};
+use work::{Ended, Work};
+
+/// Train a grid of settings times seeds under one budget, and rank the settings
+#[derive(Debug, clap::Args)]
+#[command(after_help = HELP)]
+pub struct Args {
+    /// Study: a name or a file, looked for here, in configs/studies/ and among the built-in ones
+    #[arg(value_name = "NAME|FILE")]
+    file: String,
+    /// Folder of the study; one that exists is gone on with [default: runs/NAME]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Make only part K of N: machines that share the folder make a part each
+    #[arg(long, value_name = "K/N", value_parser = Shard::parse)]
+    shard: Option<Shard>,
+    /// Runs at a time, each with its share of the processors [default: as the file says, else 1]
+    #[arg(long, value_parser = super::pool::parse_threads)]
+    jobs: Option<usize>,
+    /// Processors to share among the runs [default: all]
+    #[arg(long, value_parser = super::pool::parse_threads)]
+    threads: Option<usize>,
+    /// Train each run for so many minutes, whatever the file says
+    #[arg(long, allow_negative_numbers = true, conflicts_with = "steps")]
+    minutes: Option<f64>,
+    /// Train each run for so many environment steps, whatever the file says
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=i64::MAX as u64))]
+    steps: Option<u64>,
+    /// Check the study and list its runs; train nothing
+    #[arg(long, conflicts_with_all = ["table", "json"])]
+    list: bool,
+    /// Make the tables of what is finished; train nothing
+    #[arg(long)]
+    table: bool,
+    /// New file for all tables as JSON; the study's folder has the same
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+const HELP: &str = "A study is a file with a grid. This one makes six runs:
+
+  minutes = 1
+  seeds = 3
+  [grid]
+  ppo.minibatches = [16, 64]
+
+Further keys: config (base configuration), steps in place of minutes, agents, section_share, jobs; [set] for keys that are \
+the same in all runs; [cases.GROUP] for named values of several keys together. Built in are paper_configurations, \
+cpu_configurations, seeds_paper, seeds, regularisation and regularisation_factorial.
+
+Every setting is checked before the first run begins. After any interruption the same command goes on, without repeating a \
+finished run; with --steps it ends in the same tables. Ctrl-C ends the runs under way, which are repeated then.
+
+Examples:
+  racer study mine.toml
+  racer study cpu_configurations --minutes 2 --jobs 2 --out runs/cpu
+  racer study seeds --shard 2/4 --out /shared/seeds
+  racer report runs/cpu";
+
+/// Plans, trains what is missing, writes and prints the tables.
+pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    let (document, study) = Study::open(&args.file)?;
+    let budget = Budget { minutes: args.minutes, steps: args.steps };
+    let planned = plan(&args.file, &document, &study, budget)?;
+    let (jobs, threads) = share(args, &study)?;
+    let out = args.out.clone().unwrap_or_else(|| Path::new(RUNS).join(&planned.plan.study));
+    let folder = Folder::open(&out, &planned)?;
+    let shard = args.shard.unwrap_or(Shard::WHOLE);
+    if args.list {
+        super::print(&list(&planned, &folder, shard))?;
+        return Ok(Outcome::Done);
+    }
+    let json = args.json.as_deref().map(Reserved::new).transpose()?;
+    folder.begin(&planned.plan, document.text())?;
+    let ended = if args.table {
+        Ended::default()
+    } else {
+        interrupt::watch("Ending the runs under way; Ctrl-C again ends at once.")?;
+        work::work(&Work { planned: &planned, folder: &folder, shard, jobs, threads })?
+    };
+
+    let results = folder.write_tables()?;
+    if let Some(json) = json {
+        json.write((tables::json(&results)? + "\n").as_bytes())?;
+    }
+    if results.finished() > 0 {
+        super::print(&text::results(&results))?;
+    }
+    conclude(args, &out, &ended, results.finished(), results.runs.len())
+}
+
+/// Runs at a time and threads of each.
+fn share(args: &Args, study: &Study) -> Result<(usize, usize), BadInput> {
+    let (all, jobs) = (args.threads.unwrap_or_else(processors), args.jobs.unwrap_or(study.jobs));
+    if jobs > all {
+        let advice =
+            "give --jobs; a run that shares its processor with another one would be trained less than they say";
+        return Err(BadInput::new("jobs", jobs, &format!("at most {all}, the processors there are"), advice));
+    }
+    Ok((jobs, all / jobs))
+}
+
+fn list(planned: &Planned, folder: &Folder, shard: Shard) -> String {
+    let runs = planned.plan.runs.iter().enumerate().filter(|(i, _)| shard.has(*i)).map(|(i, run)| {
+        let state = if folder.finished(&run.name) { "finished" } else { "to do" };
+        vec![(i + 1).to_string(), run.name.clone(), state.to_string()]
+    });
+    let runs: Vec<_> = runs.collect();
+    let text = format!("{} of {} runs", runs.len(), planned.plan.runs.len());
+    format!("{}\n\n{text}", columns::table(&["", "run", "state"], runs, 0..1))
+}
+
+/// What is left to say, and how it ended.
+fn conclude(args: &Args, out: &Path, ended: &Ended, finished: usize, planned: usize) -> anyhow::Result<Outcome> {
+    tell(&format!("{finished} of {planned} runs are finished; tables in {}", out.display()));
+    for name in &ended.elsewhere {
+        tell(&format!("{name} is being made by another process"));
+    }
+    if ended.interrupted {
+        let shard = args.shard.map_or(String::new(), |shard| format!(" --shard {shard}"));
+        tell(&format!(
+            "Stopped. The same command goes on: racer study {} --out {}{shard}, with the other options as they were.",
+            args.file,
+            out.display()
+        ));
+        return Ok(Outcome::Interrupted);
+    }
+    for (name, why) in &ended.failed {
+        tell(&format!("{name} failed: {why}"));
+    }
+    match ended.failed.len() {
+        0 => {
+            tell(&format!("figures: racer report {}", out.display()));
+            Ok(Outcome::Done)
+        }
+        failed => anyhow::bail!("{failed} of the runs failed, as said above; the same command tries them again"),
+    }
+}
