@@ -14,6 +14,7 @@ mod interrupt;
 mod pool;
 mod progress;
 mod table;
+mod track;
 mod train;
 
 use crate::check::BadInput;
@@ -34,6 +35,7 @@ enum Command {
     Train(train::Args),
     Eval(eval::Args),
     Fly(fly::Args),
+    Track(track::Args),
     Import(import::Args),
     Check(check::Args),
     Identify(identify::Args),
@@ -82,6 +84,7 @@ pub fn main() -> ExitCode {
         Command::Train(args) => train::run(&args),
         Command::Eval(args) => eval::run(&args),
         Command::Fly(args) => fly::run(&args),
+        Command::Track(args) => track::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),

@@ -2,6 +2,7 @@
 
 pub mod choose;
 pub mod fly;
+pub mod pace;
 pub mod score;
 
 use crate::check::{Check, Invalid};

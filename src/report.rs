@@ -3,6 +3,7 @@
 pub mod diagnosis;
 pub mod identification;
 pub mod lap;
+mod map;
 mod page;
 mod plot;
 pub mod training;

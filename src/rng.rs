@@ -25,6 +25,8 @@ pub enum Stream {
     Pilot = 7,
     /// Noise and bias of recorded flights.
     Sensors = 8,
+    /// First laps that a reference lap is looked for from.
+    Reference = 9,
 }
 
 /// The generator's key.

@@ -5,6 +5,7 @@ use super::{Outcome, table, tell};
 use crate::check::BadInput;
 use crate::env::Race;
 use crate::env::reset::Place;
+use crate::eval::pace::Pace;
 use crate::eval::{Report, benchmark};
 use crate::fsio::Reserved;
 use crate::lane::Level;
@@ -47,7 +48,10 @@ pub struct Args {
 
 const HELP: &str = "The deterministic mean policy flies without observation or action noise through the gates' full \
 apertures, for at most 1000 steps unless configured otherwise. The paper deploys a policy where 95 % of fixed-start \
-agents complete a lap: `racer eval latest --require 0.95`.";
+agents complete a lap: `racer eval latest --require 0.95`.
+
+Laps are measured flying, from a crossing of the first gate to its next. The reference lap beside them is that of a point mass \
+with the vehicle's thrust and least drag (`racer track show --help`); the ratio of a policy is always above 1.";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Start {
@@ -77,6 +81,9 @@ struct File<'a> {
     max_steps: usize,
     #[serde(flatten)]
     report: &'a Report,
+    /// The median laps beside the reference lap of the vehicle that was flown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pace: &'a Option<Pace>,
 }
 
 /// Evaluates, prints and writes.
@@ -100,6 +107,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         fixed: (args.start != Start::Random).then(|| fly(Place::Pad)),
         random: (args.start != Start::Fixed).then(|| fly(Place::Spline)),
     });
+    let pace = Pace::of(&report, &about.track, vehicle);
     let content = File {
         snapshot: found.snapshot.display().to_string(),
         track: &about.track.name,
@@ -109,6 +117,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         seed: about.seed,
         max_steps: config.max_steps,
         report: &report,
+        pace: &pace,
     };
     let json = serde_json::to_string_pretty(&content)?;
     let written = file.write(format!("{json}\n").as_bytes())?;
@@ -118,7 +127,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         let million = about.steps as f64 / 1e6;
         let flown = other.as_ref().map_or(String::new(), |other| format!(" in {}", other.name));
         let title = format!("{} on {}{flown} after {million:.1} M steps", content.snapshot, content.track);
-        super::print(&format!("{title}\n\n{}", table::report(&report)))?;
+        super::print(&format!("{title}\n\n{}{}", table::report(&report), table::pace(pace.as_ref())))?;
     }
     tell(&format!("written to {}", written.display()));
     Ok(judge(args.require, &report))
