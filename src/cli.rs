@@ -13,6 +13,7 @@ mod import;
 mod interrupt;
 mod pool;
 mod progress;
+mod replay;
 mod table;
 mod track;
 mod train;
@@ -35,6 +36,7 @@ enum Command {
     Train(train::Args),
     Eval(eval::Args),
     Fly(fly::Args),
+    Replay(replay::Args),
     Track(track::Args),
     Import(import::Args),
     Check(check::Args),
@@ -84,6 +86,7 @@ pub fn main() -> ExitCode {
         Command::Train(args) => train::run(&args),
         Command::Eval(args) => eval::run(&args),
         Command::Fly(args) => fly::run(&args),
+        Command::Replay(args) => replay::run(&args),
         Command::Track(args) => track::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),

@@ -37,6 +37,7 @@ pub mod ppo;
 pub mod bench;
 pub mod config;
 pub mod peak;
+pub mod replay;
 pub mod report;
 pub mod run;
 pub mod snapshot;

@@ -1,16 +1,19 @@
 //! `racer eval`: what a policy is worth.
 
+mod sensitivity;
+
 use super::pool::{pool, threads};
 use super::{Outcome, table, tell};
 use crate::check::BadInput;
 use crate::env::Race;
 use crate::env::reset::Place;
 use crate::eval::pace::Pace;
-use crate::eval::{Report, benchmark};
+use crate::eval::{EvalConfig, Report, benchmark};
+use crate::nn::Network;
 use crate::fsio::Reserved;
 use crate::lane::Level;
 use crate::run::{self, Found};
-use crate::snapshot::Snapshot;
+use crate::snapshot::{About, Snapshot};
 use crate::vehicle::Vehicle;
 use clap::ValueEnum;
 use serde::Serialize;
@@ -32,6 +35,10 @@ pub struct Args {
     /// Vehicles: one nominal, all others with every factor drawn [default: as configured, 512]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     agents: Option<u32>,
+    /// Fly nominal vehicles in which one parameter at a time is wrong by a factor of 0.5 to 1.5, and print what that costs; from the
+    /// pad, with the noise of the training, without which all flights of a cell would be one [default: 128 agents in each cell]
+    #[arg(long, conflicts_with_all = ["start", "require"])]
+    sensitivity: bool,
     /// Exit with code 4 where a smaller share than this of the fixed-start agents completes a lap
     #[arg(long, value_name = "SHARE", value_parser = parse_share)]
     require: Option<f64>,
@@ -97,6 +104,10 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let mut config = about.eval.clone();
     config.agents = args.agents.map_or(config.agents, |agents| agents as usize);
     let other = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
+    if args.sensitivity {
+        config.agents = args.agents.map_or(sensitivity::AGENTS, |agents| agents as usize);
+        return sensitive(args, &found, other.as_ref(), &network, &about, &config);
+    }
     let default = || default_file(&found, other.as_ref(), args.start, config.agents);
     let file = Reserved::new(&args.out.clone().unwrap_or_else(default))?;
 
@@ -133,6 +144,24 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     Ok(judge(args.require, &report))
 }
 
+/// `--sensitivity`.
+fn sensitive(
+    args: &Args,
+    found: &Found,
+    other: Option<&Vehicle>,
+    network: &Network<f32>,
+    about: &About,
+    config: &EvalConfig,
+) -> anyhow::Result<Outcome> {
+    let vehicle = other.unwrap_or(&about.vehicle);
+    let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
+    let default = || beside(found, &format!("sensitivity-{}{}.json", named(other), config.agents));
+    let out = Reserved::new(&args.out.clone().unwrap_or_else(default))?;
+    let flown = sensitivity::Flown { race: &race, track: &about.track, network, config };
+    let snapshot = found.snapshot.display().to_string();
+    sensitivity::run(&snapshot, &flown, args.threads, args.json, out)
+}
+
 fn judge(require: Option<f64>, report: &Report) -> Outcome {
     let (completion, Some(share)) = (report.completion(), require) else { return Outcome::Done };
     if completion >= share {
@@ -145,14 +174,20 @@ fn judge(require: Option<f64>, report: &Report) -> Outcome {
 /// A name that says what was measured, and that is still free.
 fn default_file(found: &Found, other: Option<&Vehicle>, start: Start, agents: usize) -> PathBuf {
     let start = format!("{start:?}").to_lowercase();
-    let other = other.map_or(String::new(), |other| format!("{}-", run::plain(&other.name)));
+    beside(found, &format!("evaluation-{}{start}-{agents}.json", named(other)))
+}
+
+/// The other vehicle as part of a name.
+fn named(other: Option<&Vehicle>) -> String {
+    other.map_or(String::new(), |other| format!("{}-", run::plain(&other.name)))
+}
+
+/// A free file of this name beside the policy, which a snapshot's name leads.
+fn beside(found: &Found, name: &str) -> PathBuf {
     let name = match &found.run {
-        Some(_) => format!("evaluation-{other}{start}-{agents}.json"),
-        None => {
-            let policy = found.snapshot.file_stem().unwrap_or_default().to_string_lossy();
-            format!("{policy}-evaluation-{other}{start}-{agents}.json")
-        }
+        Some(_) => name.into(),
+        None => format!("{}-{name}", found.snapshot.file_stem().unwrap_or_default().to_string_lossy()),
     };
-    let beside = found.run.as_deref().or(found.snapshot.parent()).unwrap_or(Path::new(""));
-    run::free(&beside.join(name))
+    let folder = found.run.as_deref().or(found.snapshot.parent()).unwrap_or(Path::new(""));
+    run::free(&folder.join(name))
 }

@@ -29,7 +29,7 @@ pub fn chart<'a, 'b>(
     let (width, height) = area.dim_in_pixel();
     const FRAME: [u32; 2] = [56 + 24, 46 + 24 + 28];
     let pixels = [width.saturating_sub(FRAME[0]).max(1), height.saturating_sub(FRAME[1]).max(1)].map(f64::from);
-    let wanted = ends.map(|[low, high]| high - low + 4.0);
+    let wanted = ends.map(|[low, high]| high - low + 6.0);
     let scale = (wanted[0] / pixels[0]).max(wanted[1] / pixels[1]);
     let around = |axis: usize| {
         let middle = 0.5 * (ends[axis][0] + ends[axis][1]);
@@ -124,7 +124,7 @@ pub fn scale(area: &DrawingArea<SVGBackend, Shift>, top: f64) -> anyhow::Result<
     const BANDS: usize = 100;
     let at = |i: usize| top * i as f64 / BANDS as f64;
     let bands = (0..BANDS).map(|i| {
-        Rectangle::new([(0.0, at(i)), (1.0, at(i + 1))], viridis(i as f64 / BANDS as f64).filled())
+        Rectangle::new([(0.0, at(i)), (1.0, at(i + 1).min(top))], viridis(i as f64 / BANDS as f64).filled())
     });
     chart.draw_series(bands).map_err(drawing)?;
     let font = || ("sans-serif", TEXT).into_font().color(&BLACK);
