@@ -142,11 +142,7 @@ impl Race {
             .reset_spline()
             .samples(LAP_POINTS)
             .into_iter()
-            .map(|s| LapPoint {
-                position: s.position,
-                tangent: s.tangent,
-                target: track.gate_after(s.next),
-            })
+            .map(|s| LapPoint { position: s.position, tangent: s.tangent, target: track.gate_after(s.next) })
             .collect();
         Race {
             config: config.clone(),

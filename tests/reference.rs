@@ -91,7 +91,7 @@ fn built_in_tracks_are_flown_by_the_rules() {
         assert!(used.clone().all(|share| share < 1.0), "{name}");
         // A time-optimal point mass leaves no thrust unused.
         let mean = used.sum::<f64>() / reference.moments.len() as f64;
-        assert!(mean > 0.97, "{name}: {mean} of the thrust");
+        assert!(mean > 0.99, "{name}: {mean} of the thrust");
         assert!(reference.moments.iter().all(|m| track.volume.contains(&m.position)), "{name}");
     }
 }
@@ -114,9 +114,10 @@ fn the_lap_does_not_depend_on_the_effort() {
     }
 }
 
-/// An optimum that others found for this course, without drag: 6.56 s at radius 0.4 m, 6.34 s at 0.6 m.
+/// An independent optimisation of this course, without drag, found 6.56 s at radius 0.4 m and 6.34 s at 0.6 m. Ours is to be as
+/// good, and not suspiciously better.
 #[test]
-fn close_to_published_laps() {
+fn close_to_laps_that_others_found() {
     let track = Track::load("a2rl_s2").unwrap();
     for (radius, known) in [(0.4, 6.56), (0.6, 6.34)] {
         let mass = Mass { thrust: 40.0, gravity: 9.80665, drag: 0.0 };
@@ -126,6 +127,7 @@ fn close_to_published_laps() {
         }
         let found = best(&course, EFFORT).unwrap().total();
         println!("radius {radius}: {found:.3} s, known {known} s");
+        assert!((0.96..1.0).contains(&(found / known)), "radius {radius}: {found} s, known {known} s");
     }
 }
 

@@ -102,11 +102,9 @@ fn flown(args: &Args) -> anyhow::Result<Found> {
 }
 
 fn recorded(args: &Args, path: &Path) -> anyhow::Result<Found> {
-    for (option, given) in [
-        ("--vehicle", args.vehicle.is_some()),
-        ("--seconds", args.seconds.is_some()),
-        ("--agents", args.agents > 1),
-    ] {
+    for (option, given) in
+        [("--vehicle", args.vehicle.is_some()), ("--seconds", args.seconds.is_some()), ("--agents", args.agents > 1)]
+    {
         if given {
             return Err(refuse(option, "a flight log", "a policy, which is flown anew"));
         }

@@ -101,7 +101,11 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn document<'a>(track: &'a Track, vehicle: &'a Vehicle, laps: &[(&'static str, f64, Option<Reference>)]) -> Document<'a> {
+fn document<'a>(
+    track: &'a Track,
+    vehicle: &'a Vehicle,
+    laps: &[(&'static str, f64, Option<Reference>)],
+) -> Document<'a> {
     let spline = track.reset_spline();
     let gates = track.gates.iter().enumerate();
     let lap = |(battery, voltage_v, lap): &(&'static str, f64, Option<Reference>)| Lap {
@@ -114,7 +118,9 @@ fn document<'a>(track: &'a Track, vehicle: &'a Vehicle, laps: &[(&'static str, f
     Document {
         track: &track.name,
         vehicle: &vehicle.name,
-        gates: gates.map(|(i, gate)| Gate { label: track.gate_label(i), gate, at_m: spline.length_at(i + 1) }).collect(),
+        gates: gates
+            .map(|(i, gate)| Gate { label: track.gate_label(i), gate, at_m: spline.length_at(i + 1) })
+            .collect(),
         sections: &track.sections,
         reset_spline: track.shape(),
         method: METHOD,

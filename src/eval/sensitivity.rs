@@ -95,6 +95,8 @@ pub struct Row {
     pub trained: [f64; 2],
     /// Mean over all values of the completion that is lost against the nominal vehicle's.
     pub loss: f64,
+    /// The slowest median lap less the nominal vehicle's, s.
+    pub slower_s: Option<f64>,
     /// Values around the nominal one from the least to the greatest without one between them that completes fewer than 95 % of laps.
     pub holds: Option<[f64; 2]>,
     pub cells: Vec<Cell>,
@@ -141,12 +143,19 @@ pub fn sensitivity(
             parameter: parameter.name(),
             trained: parameter.trained(&race.config.randomize),
             loss: cells.iter().map(|cell| nominal.completion - cell.completion).sum::<f64>() / cells.len() as f64,
+            slower_s: slowest(&cells).zip(nominal.lap_s).map(|(slowest, nominal)| slowest - nominal),
             holds: holds(&cells),
             cells,
         });
     }
-    parameters.sort_by(|a, b| b.loss.total_cmp(&a.loss));
+    // Of those that cost no laps, the one that costs most time.
+    let cost = |row: &Row| [row.loss, row.slower_s.unwrap_or(f64::INFINITY)];
+    parameters.sort_by(|a, b| cost(b).partial_cmp(&cost(a)).unwrap_or(std::cmp::Ordering::Equal));
     Sensitivity { agents: config.agents, nominal, parameters }
+}
+
+fn slowest(cells: &[Cell]) -> Option<f64> {
+    cells.iter().filter_map(|cell| cell.lap_s).reduce(f64::max)
 }
 
 /// The values around 1 that are all good enough.
@@ -166,7 +175,11 @@ mod tests {
     fn what_holds_ends_at_the_first_failure() {
         let cells = |completions: [f64; 5]| -> Vec<Cell> {
             let values = [0.8, 0.9, 1.0, 1.1, 1.2];
-            values.into_iter().zip(completions).map(|(value, completion)| Cell { value, completion, lap_s: None }).collect()
+            values
+                .into_iter()
+                .zip(completions)
+                .map(|(value, completion)| Cell { value, completion, lap_s: None })
+                .collect()
         };
         assert_eq!(holds(&cells([1.0, 0.5, 0.96, 0.95, 0.2])), Some([1.0, 1.1]));
         assert_eq!(holds(&cells([1.0; 5])), Some([0.8, 1.2]));

@@ -103,7 +103,7 @@ fn lengths(path: &[Vector3<f64>]) -> Vec<f64> {
 /// Stations along `nominal`, whose vehicle flew to the gates `targets`. Each of the `others` is followed from plane to plane.
 pub fn profile(nominal: &[Vector3<f64>], targets: &[usize], others: &[Vec<Vector3<f64>>]) -> Vec<Station> {
     let lengths = lengths(nominal);
-    let mut last_crossed = vec![0; others.len()];
+    let mut last_crossed = vec![0_usize; others.len()];
     let mut stations = Vec::new();
     let mut due = STEP_M;
     for i in 1..nominal.len().saturating_sub(1) {

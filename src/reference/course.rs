@@ -41,7 +41,8 @@ pub const LEAST_STEPS: usize = 6;
 impl Course {
     pub fn new(track: &Track, mass: Mass) -> Self {
         let gates = track.gates.iter();
-        let gates = gates.map(|gate| Aperture { centre: gate.position(), axes: gate.rotation(), radius: gate.radius_m });
+        let gates =
+            gates.map(|gate| Aperture { centre: gate.position(), axes: gate.rotation(), radius: gate.radius_m });
         Course { mass, gates: gates.collect(), volume: [track.volume.min_m, track.volume.max_m] }
     }
 
@@ -151,8 +152,7 @@ impl Nodes {
     pub fn refined(&self, density: usize) -> Nodes {
         let places = self.places();
         let step = self.total() / (density * self.steps.len()) as f64;
-        let steps: Vec<usize> =
-            self.seconds.iter().map(|s| ((s / step).round() as usize).max(LEAST_STEPS)).collect();
+        let steps: Vec<usize> = self.seconds.iter().map(|s| ((s / step).round() as usize).max(LEAST_STEPS)).collect();
         let mut positions = Vec::new();
         let mut first = 0;
         for (segment, &count) in steps.iter().enumerate() {

@@ -75,17 +75,28 @@ pub fn scene(entities: Vec<Value>) -> Value {
 
 /// Gates as frames with their names, the start, and the reset spline.
 pub fn course(ns: u64, track: &Track) -> Value {
-    let mut entities: Vec<Value> = track.gates.iter().enumerate().map(|(i, gate)| {
-        let label = track.gate_label(i);
-        let parts = json!({ "cubes": bars(gate), "texts": [name(&label, gate)] });
-        entity(ns, WORLD, &format!("gate {label}"), false, parts)
-    }).collect();
+    let mut entities: Vec<Value> = track
+        .gates
+        .iter()
+        .enumerate()
+        .map(|(i, gate)| {
+            let label = track.gate_label(i);
+            let parts = json!({ "cubes": bars(gate), "texts": [name(&label, gate)] });
+            entity(ns, WORLD, &format!("gate {label}"), false, parts)
+        })
+        .collect();
     let mut start = track.start.position_m;
     start[2] = 0.02;
     let pad = json!({ "pose": pose(start, LEVEL), "size": vector([0.6, 0.6, 0.04]), "color": colour(BLUE) });
     entities.push(entity(ns, WORLD, "start", false, json!({ "cubes": [pad] })));
     let points = track.reset_spline().samples(400).into_iter().map(|s| vector(s.position.into())).collect();
-    entities.push(entity(ns, WORLD, "reset spline", false, json!({ "lines": [line(1, 1.0, points, PALE, Vec::new())] })));
+    entities.push(entity(
+        ns,
+        WORLD,
+        "reset spline",
+        false,
+        json!({ "lines": [line(1, 1.0, points, PALE, Vec::new())] }),
+    ));
     scene(entities)
 }
 
@@ -104,7 +115,8 @@ fn bars(gate: &Gate) -> Vec<Value> {
         .into_iter()
         .map(|(left, up)| {
             let place = gate.position() + gate.rotation() * Vector3::new(0.0, left * middle, up * middle);
-            let size = if left == 0.0 { [0.06, 2.0 * middle + width, width] } else { [0.06, width, 2.0 * middle - width] };
+            let size =
+                if left == 0.0 { [0.06, 2.0 * middle + width, width] } else { [0.06, width, 2.0 * middle - width] };
             json!({ "pose": pose(place.into(), attitude), "size": vector(size), "color": colour(solid) })
         })
         .collect()
@@ -156,7 +168,8 @@ pub fn model(ns: u64, i: usize) -> Value {
         json!({ "pose": pose([0.0; 3], attitude), "size": vector([0.5, 0.04, 0.03]), "color": colour(solid) })
     };
     let quarter = std::f64::consts::FRAC_PI_4;
-    let nose = json!({ "pose": pose([0.13, 0.0, 0.02], LEVEL), "size": vector([0.1, 0.06, 0.05]), "color": colour(ORANGE) });
+    let nose =
+        json!({ "pose": pose([0.13, 0.0, 0.02], LEVEL), "size": vector([0.1, 0.06, 0.05]), "color": colour(ORANGE) });
     let rotors: Vec<Value> = [1.0, 3.0, 5.0, 7.0]
         .map(|k: f64| {
             let (sin, cos) = (k * quarter).sin_cos();
@@ -187,9 +200,9 @@ pub fn remark(ns: u64, vehicle: &str, message: &str, failed: bool) -> Value {
     json!({ "timestamp": stamp(ns), "level": level, "message": message, "name": vehicle, "file": "", "line": 0 })
 }
 
-/// The JSON schema of messages like `example`: the types of what is in it.
-pub fn schema(name: &str, example: &Value) -> Value {
-    let mut schema = described(example);
+/// The JSON schema of messages like `examples`: the types of everything that is in one of them.
+pub fn schema(name: &str, examples: &[&Value]) -> Value {
+    let mut schema = described(examples);
     if let Some(fields) = schema.as_object_mut() {
         fields.insert("title".into(), name.into());
         fields.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
@@ -197,28 +210,38 @@ pub fn schema(name: &str, example: &Value) -> Value {
     schema
 }
 
-fn described(value: &Value) -> Value {
-    match value {
+fn described(values: &[&Value]) -> Value {
+    // Numbers that are not known are null; Foxglove reads no lists of types.
+    let Some(first) = values.iter().find(|value| !value.is_null()) else { return json!({ "type": "number" }) };
+    match first {
         Value::Object(fields) if fields.len() == 2 && fields.contains_key("nsec") => json!({
             "type": "object",
             "title": "time",
-            "properties": { "sec": { "type": "integer", "minimum": 0 }, "nsec": { "type": "integer", "minimum": 0, "maximum": 999_999_999 } },
+            "properties": {
+                "sec": { "type": "integer", "minimum": 0 },
+                "nsec": { "type": "integer", "minimum": 0, "maximum": 999_999_999 },
+            },
         }),
-        Value::Object(fields) => {
-            let properties: serde_json::Map<_, _> =
-                fields.iter().map(|(name, value)| (name.clone(), described(value))).collect();
-            json!({ "type": "object", "properties": properties })
+        Value::Object(_) => {
+            let mut fields: serde_json::Map<String, Value> = serde_json::Map::new();
+            for name in values.iter().filter_map(|value| value.as_object()).flat_map(|object| object.keys()) {
+                if !fields.contains_key(name) {
+                    let all: Vec<&Value> = values.iter().filter_map(|value| value.get(name)).collect();
+                    fields.insert(name.clone(), described(&all));
+                }
+            }
+            json!({ "type": "object", "properties": fields })
         }
-        // An empty list says nothing about what could be in it.
-        Value::Array(items) => match items.iter().max_by_key(|item| item.to_string().len()) {
-            Some(item) => json!({ "type": "array", "items": described(item) }),
-            None => json!({ "type": "array", "items": { "type": "object", "properties": {} } }),
-        },
+        Value::Array(_) => {
+            let items: Vec<&Value> = values.iter().filter_map(|value| value.as_array()).flatten().collect();
+            // Empty lists say nothing about what could be in them.
+            let items =
+                if items.is_empty() { json!({ "type": "object", "properties": {} }) } else { described(&items) };
+            json!({ "type": "array", "items": items })
+        }
         Value::String(_) => json!({ "type": "string" }),
         Value::Bool(_) => json!({ "type": "boolean" }),
-        Value::Number(number) if number.is_f64() => json!({ "type": "number" }),
-        Value::Number(_) => json!({ "type": "integer" }),
-        // A number that is not known. Foxglove reads no lists of types.
-        Value::Null => json!({ "type": "number" }),
+        _ if values.iter().all(|value| value.is_i64() || value.is_u64()) => json!({ "type": "integer" }),
+        _ => json!({ "type": "number" }),
     }
 }

@@ -16,7 +16,8 @@ const REACH_S: f64 = 0.5;
 pub fn recorded(log: &Log, track: Option<&Track>) -> Result<Replay, BadInput> {
     let poses = &log.odometry;
     let known = |row: &[f64; 10]| row[..7].iter().all(|x| x.is_finite());
-    let mut kept: Vec<usize> = (0..poses.len()).filter(|&i| known(&poses.rows[i]) && poses.time_s[i].is_finite()).collect();
+    let mut kept: Vec<usize> =
+        (0..poses.len()).filter(|&i| known(&poses.rows[i]) && poses.time_s[i].is_finite()).collect();
     // A receiver that starts anew may send old times again.
     let mut latest = f64::NEG_INFINITY;
     kept.retain(|&i| {

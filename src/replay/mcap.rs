@@ -21,7 +21,7 @@ use std::io::Cursor;
 /// | `/commands`, `/state` | `racer.Commands`, `racer.State` of the first vehicle |
 /// | `/observation` | `racer.Observation`: what the policy saw, as the network gets it |
 pub fn mcap(replay: &Replay) -> Result<Vec<u8>> {
-    let mut messages = timeless(replay);
+    let mut messages = timeless(replay)?;
     for (i, vehicle) in replay.vehicles.iter().enumerate() {
         for frame in &vehicle.frames {
             let ns = at(replay, frame.time_s)?;
@@ -61,9 +61,9 @@ fn at(replay: &Replay, time_s: f64) -> Result<u64> {
 }
 
 /// What is there from the first moment to the last.
-fn timeless(replay: &Replay) -> Vec<Message> {
+fn timeless(replay: &Replay) -> Result<Vec<Message>> {
     let first = replay.vehicles.iter().filter_map(|v| v.frames.first()).map(|frame| frame.time_s);
-    let ns = at(replay, first.fold(f64::INFINITY, f64::min)).unwrap_or(replay.start_ns);
+    let ns = at(replay, first.fold(f64::INFINITY, f64::min))?;
     let top = replay.vehicles.iter().flat_map(|v| &v.frames).map(Frame::speed).fold(1.0, f64::max);
     let each = |entity: &dyn Fn(usize) -> Value| foxglove::scene((0..replay.vehicles.len()).map(entity).collect());
     const SCENE: &str = "foxglove.SceneUpdate";
@@ -77,7 +77,7 @@ fn timeless(replay: &Replay) -> Vec<Message> {
     if let Some(first) = replay.vehicles.first() {
         messages.push(Message::new(ns, "/poses", "foxglove.PosesInFrame", foxglove::poses(ns, first)));
     }
-    messages
+    Ok(messages)
 }
 
 /// Numbers that are not known become null.
@@ -134,17 +134,14 @@ fn write(messages: &[Message]) -> Result<Vec<u8>> {
         .compression(Some(Compression::Zstd))
         .compression_threads(0)
         .create(Cursor::new(Vec::new()))?;
-    // A schema describes the fullest message of its kind.
-    let mut fullest: BTreeMap<&str, &Value> = BTreeMap::new();
+    // A schema describes the first message of every topic that has it.
+    let mut examples: BTreeMap<&str, BTreeMap<&str, &Value>> = BTreeMap::new();
     for message in messages {
-        let best = fullest.entry(message.schema).or_insert(&message.content);
-        if message.schema == "foxglove.SceneUpdate" && message.topic == "/track" {
-            *best = &message.content;
-        }
+        examples.entry(message.schema).or_default().entry(message.topic).or_insert(&message.content);
     }
     let mut schemas = BTreeMap::new();
-    for (name, example) in fullest {
-        let text = foxglove::schema(name, example).to_string();
+    for (name, examples) in examples {
+        let text = foxglove::schema(name, &examples.into_values().collect::<Vec<_>>()).to_string();
         schemas.insert(name, file.add_schema(name, "jsonschema", text.as_bytes())?);
     }
     let mut channels: BTreeMap<&str, (u16, u32)> = BTreeMap::new();

@@ -26,7 +26,12 @@ pub fn race(
     let raced = dispatch(level, Fly { race: &race, network, first: 0, vehicles, steps, gates, seen: true });
     let name = |i: usize| if i == 0 { race.vehicle.name.clone() } else { format!("randomised {i}") };
     let vehicles = raced.iter().enumerate().map(|(i, raced)| vehicle(name(i), raced, track, race.dt)).collect();
-    Replay { title: format!("{} on {}", race.vehicle.name, track.name), start_ns: 0, track: Some(track.clone()), vehicles }
+    Replay {
+        title: format!("{} on {}", race.vehicle.name, track.name),
+        start_ns: 0,
+        track: Some(track.clone()),
+        vehicles,
+    }
 }
 
 fn vehicle(name: String, raced: &Raced, track: &Track, dt: f64) -> Vehicle {

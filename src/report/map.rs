@@ -71,9 +71,9 @@ pub fn spline(chart: &mut Chart, track: &Track) -> anyhow::Result<()> {
 
 /// A line through `places` coloured by the speed (m/s) beside each, of at most `top`.
 pub fn coloured(chart: &mut Chart, places: &[(Place, f64)], top: f64) -> anyhow::Result<()> {
-    let pieces = places.windows(2).map(|pair| {
-        PathElement::new([pair[0].0, pair[1].0], viridis(pair[0].1 / top).stroke_width(4))
-    });
+    let pieces = places
+        .windows(2)
+        .map(|pair| PathElement::new([pair[0].0, pair[1].0], viridis(pair[0].1 / top).stroke_width(4)));
     chart.draw_series(pieces).map_err(drawing)?;
     Ok(())
 }
@@ -123,9 +123,8 @@ pub fn scale(area: &DrawingArea<SVGBackend, Shift>, top: f64) -> anyhow::Result<
         .map_err(drawing)?;
     const BANDS: usize = 100;
     let at = |i: usize| top * i as f64 / BANDS as f64;
-    let bands = (0..BANDS).map(|i| {
-        Rectangle::new([(0.0, at(i)), (1.0, at(i + 1).min(top))], viridis(i as f64 / BANDS as f64).filled())
-    });
+    let bands = (0..BANDS)
+        .map(|i| Rectangle::new([(0.0, at(i)), (1.0, at(i + 1).min(top))], viridis(i as f64 / BANDS as f64).filled()));
     chart.draw_series(bands).map_err(drawing)?;
     let font = || ("sans-serif", TEXT).into_font().color(&BLACK);
     let step = if top > 12.0 { 5.0 } else { 2.0 };

@@ -1,8 +1,8 @@
 //! Randomised flights over the nominal one, and where they spread (the paper's Figure 7).
 
+use super::drawing;
 use super::map;
 use super::plot::{self, BLUE, ORANGE, TEXT};
-use super::drawing;
 use crate::eval::spread::Spread;
 use crate::track::Track;
 use nalgebra::Vector3;
@@ -58,9 +58,11 @@ fn draw_profile(area: &plot::Area, track: &Track, spread: &Spread) -> anyhow::Re
             free = at + 0.028 * length;
         }
     }
-    let upper = profile.iter().map(|s| (s.at_m, s.p90_m));
-    chart.draw_series(AreaSeries::new(upper.clone(), 0.0, BLUE.mix(0.2))).map_err(drawing)?;
-    plot::line(&mut chart, upper, BLUE.stroke_width(1))?;
+    let upper = || profile.iter().map(|s| (s.at_m, s.p90_m));
+    let ends = [profile.last(), profile.first()].into_iter().flatten().map(|s| (s.at_m, 0.0));
+    let band = Polygon::new(upper().chain(ends).collect::<Vec<_>>(), BLUE.mix(0.2).filled());
+    chart.draw_series([band]).map_err(drawing)?;
+    plot::line(&mut chart, upper(), BLUE.stroke_width(1))?;
     plot::line(&mut chart, profile.iter().map(|s| (s.at_m, s.median_m)), BLACK.stroke_width(2))?;
     if let Some(widest) = spread.widest() {
         let dot = Circle::new((widest.at_m, widest.p90_m), 5, ORANGE.filled());
@@ -70,5 +72,6 @@ fn draw_profile(area: &plot::Area, track: &Track, spread: &Spread) -> anyhow::Re
     let said = spread.widest().map_or(String::new(), |s| {
         format!("; widest, {:.2} m, at {:.0} m on the way to gate {}", s.p90_m, s.at_m, track.gate_label(s.gate))
     });
-    area.draw(&Text::new(format!("median (black) and 90 % (blue) of the vehicles{said}"), (72, 2), text)).map_err(drawing)
+    area.draw(&Text::new(format!("median (black) and 90 % (blue) of the vehicles{said}"), (72, 2), text))
+        .map_err(drawing)
 }

@@ -33,7 +33,13 @@ pub struct Flown<'a> {
 }
 
 /// Flies, prints and writes.
-pub fn run(snapshot: &str, flown: &Flown, threads: Option<usize>, json: bool, out: Reserved) -> anyhow::Result<Outcome> {
+pub fn run(
+    snapshot: &str,
+    flown: &Flown,
+    threads: Option<usize>,
+    json: bool,
+    out: Reserved,
+) -> anyhow::Result<Outcome> {
     let Flown { race, track, network, config } = *flown;
     let bar = ProgressBar::new(100);
     bar.set_style(ProgressStyle::with_template("{bar:24} {percent:>3} %")?);
@@ -69,11 +75,14 @@ fn text(file: &File) -> String {
 fn table(rows: &[&Row]) -> String {
     let Some(first) = rows.first() else { return String::new() };
     let values: Vec<_> = first.cells.iter().map(|cell| format!("{:.1}", cell.value)).collect();
-    let header: Vec<&str> =
-        ["parameter", "mean loss, %", "95 % holds"].into_iter().chain(values.iter().map(String::as_str)).collect();
+    let header: Vec<&str> = ["parameter", "mean loss, %", "slower by, s", "95 % holds"]
+        .into_iter()
+        .chain(values.iter().map(String::as_str))
+        .collect();
     let lines = rows.iter().map(|row| {
         let holds = row.holds.map_or("nowhere".into(), |[low, high]| format!("{low:.1} - {high:.1}"));
-        let mut line = vec![row.parameter.clone(), format!("{:.1}", 100.0 * row.loss), holds];
+        let slower = row.slower_s.map_or("-".into(), |slower| format!("{slower:.2}"));
+        let mut line = vec![row.parameter.clone(), format!("{:.1}", 100.0 * row.loss), slower, holds];
         line.extend(row.cells.iter().map(|each| {
             let [low, high] = row.trained;
             let inside = (low - 1e-9..=high + 1e-9).contains(&each.value);

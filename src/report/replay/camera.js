@@ -29,7 +29,7 @@ function chooseCamera(mode) {
   if (mode === "orbit") Object.assign(camera, { distance: 14, elevation: 0.42 });
   if (mode === "follow") Object.assign(camera, { distance: 5.5 });
   if (mode === "top") camera.topSpan = 1;
-  if (mode === "whole") Object.assign(camera, { distance: 1.0 * box.size + 4, elevation: 0.62, azimuth: -1.9 });
+  if (mode === "whole") Object.assign(camera, { distance: 0.9 * box.size + 4, elevation: 0.66, azimuth: -1.75 });
 }
 
 // Places the camera for the vehicle in view; seconds since the last picture smooth the following.
@@ -38,10 +38,10 @@ function aim(state, seconds) {
   c.flat = c.mode === "top";
   if (c.flat) {
     [c.right, c.up, c.ahead] = [[1, 0, 0], [0, 1, 0], [0, 0, -1]];
-    const room = [c.width - 340, c.height - 130];
+    // The panels at the sides and the bar below take room from the picture.
+    const room = [Math.max(200, c.width - 620), c.height - 100];
     c.focus = Math.min(room[0] / (box.high[0] - box.low[0] + 6), room[1] / (box.high[1] - box.low[1] + 6)) * c.topSpan;
-    // The panel on the left takes room from the picture.
-    c.eye = add([box.middle[0] - 120 / c.focus, box.middle[1] - 20 / c.focus, 100], c.pan);
+    c.eye = add([box.middle[0] + 12 / c.focus, box.middle[1] - 25 / c.focus, 100], c.pan);
     return;
   }
   c.focus = 0.95 * Math.max(c.height, 0.6 * c.width);
@@ -77,11 +77,24 @@ const before = s => camera.flat || s[2] > NEAR;
 // Pixels of a metre at a place.
 const metre = p => camera.flat ? camera.focus : camera.focus / Math.max(NEAR, seen(p)[2]);
 
+// Corners of a flat shape, seen from the camera, without what comes too near.
+function clipped(corners) {
+  const out = [];
+  corners.forEach((s, i) => {
+    const e = corners[(i + 1) % corners.length];
+    if (before(s)) out.push(s);
+    if (before(s) !== before(e)) out.push(meet(s, e));
+  });
+  return out;
+}
+
+// Where the line between two seen places comes too near.
+const meet = (x, y) => add(x, add(y, x, -1), (NEAR + 1e-6 - x[2]) / (y[2] - x[2]));
+
 // A line of the world cut where it comes too near; none where all of it is behind.
 function cut(a, b) {
   let [s, e] = [seen(a), seen(b)];
   if (!before(s) && !before(e)) return null;
-  const meet = (x, y) => add(x, add(y, x, -1), (NEAR + 1e-6 - x[2]) / (y[2] - x[2]));
   if (!before(s)) s = meet(s, e); else if (!before(e)) e = meet(e, s);
   return [pixel(s), pixel(e)];
 }

@@ -45,7 +45,7 @@ function stick(x, y, size, right, up, names) {
   board.stroke();
   board.fillStyle = "#48525c";
   board.textAlign = "center";
-  board.fillText(names, x + size / 2, y + size + 17);
+  board.fillText(names, x + size / 2, y + size + 19);
   if (!Number.isFinite(right) || !Number.isFinite(up)) {
     board.fillText("not recorded", x + size / 2, y + size / 2 - 6);
     return;
@@ -61,9 +61,10 @@ const known = x => x === null || x === undefined ? NaN : x;
 
 function sticks(state) {
   const [roll, pitch, yaw, thrust] = state.command.map(known);
-  board.setTransform(1, 0, 0, 1, 0, 0);
-  board.clearRect(0, 0, 380, 190);
-  board.font = "14px system-ui, sans-serif";
+  // Twice as fine as it is shown, for screens that can.
+  board.setTransform(2, 0, 0, 2, 0, 0);
+  board.clearRect(0, 0, 380, 180);
+  board.font = "17px system-ui, sans-serif";
   const size = 140;
   // Sticks as a pilot holds them: right is a turn to the right, up is nose down.
   stick(10, 14, size, -yaw, thrust, "yaw \u00b7 thrust");
@@ -77,7 +78,7 @@ function sticks(state) {
     board.fillRect(x, 14 + size - high, 16, high);
     board.fillStyle = "#48525c";
     board.textAlign = "center";
-    board.fillText(name, x + 8, 14 + size + 17);
+    board.fillText(name, x + 8, 14 + size + 19);
   }
 }
 

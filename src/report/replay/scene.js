@@ -17,8 +17,8 @@ function stroke(lines, colour, width) {
 }
 
 function fill(corners, colour) {
-  const places = corners.map(seen);
-  if (!places.every(before)) return;
+  const places = clipped(corners.map(seen));
+  if (places.length < 3) return;
   pen.fillStyle = colour;
   pen.beginPath();
   places.map(pixel).forEach(([x, y], i) => i ? pen.lineTo(x, y) : pen.moveTo(x, y));
@@ -32,7 +32,6 @@ function floor() {
   const lines = [];
   for (let x = ends[0][0]; x <= ends[0][1]; x += step) lines.push([[x, ends[1][0], 0], [x, ends[1][1], 0]]);
   for (let y = ends[1][0]; y <= ends[1][1]; y += step) lines.push([[ends[0][0], y, 0], [ends[0][1], y, 0]]);
-  // In pieces, so that a line that comes from behind the viewer is not lost.
   stroke(lines, "#d9dfe4", 1);
 }
 
