@@ -7,6 +7,7 @@ mod foxglove;
 mod layout;
 mod log;
 pub mod mcap;
+mod schema;
 mod simulated;
 
 pub use layout::layout;

@@ -6,10 +6,15 @@
 use racer::config::Setup;
 use racer::env::Race;
 use racer::env::observe::OBSERVATIONS;
+use racer::env::reset::Place;
+use racer::eval::fly::fly;
+use racer::eval::spread::spread;
 use racer::flight::Log;
 use racer::lane::Level;
 use racer::nn::Network;
 use racer::replay::{Replay, mcap::mcap, race, recorded};
+use racer::report;
+use racer::report::commands::Commands;
 use racer::report::replay::page;
 use racer::rng::{Philox, Stream};
 use racer::track::Track;
@@ -63,6 +68,21 @@ fn the_first_vehicle_is_nominal_and_the_others_are_not() {
     assert!(length > 10 && nominal[0].observation.is_some());
     assert_eq!(nominal[0].position, first[0].position);
     assert!(nominal[0].voltage > first[0].voltage && first[length - 1].position != second[length - 1].position);
+}
+
+#[test]
+fn figures_of_flights_are_drawn() {
+    let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).unwrap();
+    let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(Stream::Weights, 0, 0));
+    let race = Race::new(&config.env, &track, &vehicle, 3);
+    let spread = spread(Level::best(), &race, &track, &network, 20, 100);
+    assert_eq!((spread.nominal.len() > 10, spread.randomised.len()), (true, 20));
+    let figure = report::spread::svg(&track, &spread, "fixed starts").unwrap();
+    assert!(figure.contains("20 randomised vehicles") && figure.contains("fixed starts"));
+    let trace = fly(Level::best(), &race.scored(&track), &network, Place::Pad, 1, 100).trace;
+    let [left, right] = ["weak", "strong"].map(|title| Commands { title, trace: &trace });
+    let figure = report::commands::svg(left, right).unwrap();
+    assert!(["weak", "strong", "roll rate", "thrust", "time, s"].iter().all(|text| figure.contains(text)));
 }
 
 fn told(missing: &str, required: &str) {

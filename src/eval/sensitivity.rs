@@ -1,5 +1,9 @@
 //! What each error of the model costs: success and lap time as one parameter alone leaves its nominal value.
 
+mod parameter;
+
+pub use parameter::Parameter;
+
 use super::EvalConfig;
 use super::fly::{Fleet, fly_fleet};
 use super::score::score;
@@ -9,73 +13,7 @@ use crate::env::reset::Place;
 use crate::lane::Level;
 use crate::nn::Network;
 use crate::track::Track;
-use crate::vehicle::randomize::RandomizeConfig;
 use serde::Serialize;
-
-/// One randomised factor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parameter {
-    /// Of roll, pitch, yaw, thrust.
-    TimeConstant(usize),
-    /// Of roll, pitch, yaw.
-    MaxRate(usize),
-    Thrust,
-    Drag,
-    /// Of the battery at the start; not a factor but a share, 0 empty, 1 full.
-    Charge,
-}
-
-const AXES: [&str; 4] = ["roll", "pitch", "yaw", "thrust"];
-
-impl Parameter {
-    /// Everything that `env.randomize` draws.
-    pub fn all() -> Vec<Parameter> {
-        let time = (0..4).map(Parameter::TimeConstant);
-        let rate = (0..3).map(Parameter::MaxRate);
-        time.chain(rate).chain([Parameter::Thrust, Parameter::Drag, Parameter::Charge]).collect()
-    }
-
-    pub fn name(self) -> String {
-        match self {
-            Parameter::TimeConstant(i) => format!("time constant, {}", AXES[i]),
-            Parameter::MaxRate(i) => format!("maximum rate, {}", AXES[i]),
-            Parameter::Thrust => "thrust".into(),
-            Parameter::Drag => "drag".into(),
-            Parameter::Charge => "charge".into(),
-        }
-    }
-
-    /// The values that are tried.
-    fn values(self) -> Vec<f64> {
-        let from = if self == Parameter::Charge { 0 } else { 5 };
-        (from..=from + 10).map(|tenths| f64::from(tenths) / 10.0).collect()
-    }
-
-    /// From where to where a policy was trained.
-    fn trained(self, config: &RandomizeConfig) -> [f64; 2] {
-        match self {
-            Parameter::TimeConstant(_) => config.time_constant,
-            Parameter::MaxRate(_) => config.max_rate,
-            Parameter::Thrust => config.thrust,
-            Parameter::Drag => config.drag,
-            Parameter::Charge => config.charge,
-        }
-    }
-
-    /// The nominal vehicle but for this value.
-    fn fleet(self, value: f64) -> Fleet {
-        let mut factors = Factors::NOMINAL;
-        let mut charge = 1.0;
-        match self {
-            Parameter::TimeConstant(i) => factors.time_constant[i] = value,
-            Parameter::MaxRate(i) => factors.max_rate[i] = value,
-            Parameter::Thrust => factors.thrust = value,
-            Parameter::Drag => factors.drag = value,
-            Parameter::Charge => charge = value,
-        }
-        Fleet::Same(factors, charge)
-    }
-}
 
 /// How a policy does as one parameter at a time is wrong.
 #[derive(Clone, Debug, Serialize)]
@@ -184,14 +122,5 @@ mod tests {
         assert_eq!(holds(&cells([1.0, 0.5, 0.96, 0.95, 0.2])), Some([1.0, 1.1]));
         assert_eq!(holds(&cells([1.0; 5])), Some([0.8, 1.2]));
         assert_eq!(holds(&cells([1.0, 1.0, 0.9, 1.0, 1.0])), None);
-    }
-
-    #[test]
-    fn every_parameter_is_tried_once() {
-        let names: std::collections::BTreeSet<_> = Parameter::all().into_iter().map(Parameter::name).collect();
-        assert_eq!(names.len(), 10);
-        assert_eq!(Parameter::Charge.values().first(), Some(&0.0));
-        let Fleet::Same(factors, charge) = Parameter::MaxRate(1).fleet(0.7) else { panic!("one vehicle") };
-        assert_eq!((factors.max_rate, factors.thrust, charge), ([1.0, 0.7, 1.0], 1.0, 1.0));
     }
 }

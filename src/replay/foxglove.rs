@@ -1,4 +1,4 @@
-//! Foxglove's well-known messages as JSON, and the JSON schemas that describe what is in ours.
+//! Foxglove's well-known messages as JSON.
 //!
 //! Names of messages and fields: Foxglove's published schemas (docs.foxglove.dev/docs/visualization/message-schemas).
 
@@ -134,6 +134,9 @@ fn name(label: &str, gate: &Gate) -> Value {
     })
 }
 
+/// Most places of a path: of longer flights every second, third, ...
+const PLACES: usize = 5000;
+
 /// `kind` 0: a strip of lines; 1: a closed one.
 fn line(kind: u8, thickness: f64, points: Vec<Value>, solid: [f64; 4], colours: Vec<Value>) -> Value {
     json!({
@@ -148,14 +151,19 @@ fn line(kind: u8, thickness: f64, points: Vec<Value>, solid: [f64; 4], colours: 
     })
 }
 
+/// Frames of a path, at most [`PLACES`] and one.
+fn kept(vehicle: &Vehicle) -> impl Iterator<Item = &Frame> {
+    vehicle.frames.iter().step_by(vehicle.frames.len().div_ceil(PLACES).max(1))
+}
+
 /// The whole path of a vehicle; that of the first coloured by speed, of at most `top` m/s.
 pub fn path(ns: u64, i: usize, vehicle: &Vehicle, top: f64) -> Value {
-    let points = vehicle.frames.iter().map(|frame| vector(frame.position)).collect();
+    let points = kept(vehicle).map(|frame| vector(frame.position)).collect();
     let shade = |frame: &Frame| {
         let plotters::style::RGBColor(r, g, b) = viridis(frame.speed() / top);
         colour([f64::from(r) / 255.0, f64::from(g) / 255.0, f64::from(b) / 255.0, 1.0])
     };
-    let colours = if i == 0 { vehicle.frames.iter().map(shade).collect() } else { Vec::new() };
+    let colours = if i == 0 { kept(vehicle).map(shade).collect() } else { Vec::new() };
     let line = line(0, if i == 0 { 3.0 } else { 1.0 }, points, PALE, colours);
     entity(ns, WORLD, &format!("path of {}", body(i)), false, json!({ "lines": [line] }))
 }
@@ -188,7 +196,7 @@ pub fn model(ns: u64, i: usize) -> Value {
 
 /// `foxglove.PosesInFrame` of a flight.
 pub fn poses(ns: u64, vehicle: &Vehicle) -> Value {
-    let poses: Vec<_> = vehicle.frames.iter().map(|frame| pose(frame.position, frame.attitude)).collect();
+    let poses: Vec<_> = kept(vehicle).map(|frame| pose(frame.position, frame.attitude)).collect();
     json!({ "timestamp": stamp(ns), "frame_id": WORLD, "poses": poses })
 }
 
@@ -198,50 +206,4 @@ pub fn remark(ns: u64, vehicle: &str, message: &str, failed: bool) -> Value {
     const WARNING: u8 = 3;
     let level = if failed { WARNING } else { INFO };
     json!({ "timestamp": stamp(ns), "level": level, "message": message, "name": vehicle, "file": "", "line": 0 })
-}
-
-/// The JSON schema of messages like `examples`: the types of everything that is in one of them.
-pub fn schema(name: &str, examples: &[&Value]) -> Value {
-    let mut schema = described(examples);
-    if let Some(fields) = schema.as_object_mut() {
-        fields.insert("title".into(), name.into());
-        fields.insert("$schema".into(), "https://json-schema.org/draft/2020-12/schema".into());
-    }
-    schema
-}
-
-fn described(values: &[&Value]) -> Value {
-    // Numbers that are not known are null; Foxglove reads no lists of types.
-    let Some(first) = values.iter().find(|value| !value.is_null()) else { return json!({ "type": "number" }) };
-    match first {
-        Value::Object(fields) if fields.len() == 2 && fields.contains_key("nsec") => json!({
-            "type": "object",
-            "title": "time",
-            "properties": {
-                "sec": { "type": "integer", "minimum": 0 },
-                "nsec": { "type": "integer", "minimum": 0, "maximum": 999_999_999 },
-            },
-        }),
-        Value::Object(_) => {
-            let mut fields: serde_json::Map<String, Value> = serde_json::Map::new();
-            for name in values.iter().filter_map(|value| value.as_object()).flat_map(|object| object.keys()) {
-                if !fields.contains_key(name) {
-                    let all: Vec<&Value> = values.iter().filter_map(|value| value.get(name)).collect();
-                    fields.insert(name.clone(), described(&all));
-                }
-            }
-            json!({ "type": "object", "properties": fields })
-        }
-        Value::Array(_) => {
-            let items: Vec<&Value> = values.iter().filter_map(|value| value.as_array()).flatten().collect();
-            // Empty lists say nothing about what could be in them.
-            let items =
-                if items.is_empty() { json!({ "type": "object", "properties": {} }) } else { described(&items) };
-            json!({ "type": "array", "items": items })
-        }
-        Value::String(_) => json!({ "type": "string" }),
-        Value::Bool(_) => json!({ "type": "boolean" }),
-        _ if values.iter().all(|value| value.is_i64() || value.is_u64()) => json!({ "type": "integer" }),
-        _ => json!({ "type": "number" }),
-    }
 }

@@ -1,6 +1,7 @@
 //! A flight as an MCAP file that Foxglove shows as it is: JSON messages of its well-known kinds, and plain ones to plot.
 
 use super::foxglove::{self, body, stamp};
+use super::schema::schema;
 use super::{Frame, Replay};
 use crate::env::observe::LAYOUT;
 use ::mcap::records::MessageHeader;
@@ -141,7 +142,7 @@ fn write(messages: &[Message]) -> Result<Vec<u8>> {
     }
     let mut schemas = BTreeMap::new();
     for (name, examples) in examples {
-        let text = foxglove::schema(name, &examples.into_values().collect::<Vec<_>>()).to_string();
+        let text = schema(name, &examples.into_values().collect::<Vec<_>>()).to_string();
         schemas.insert(name, file.add_schema(name, "jsonschema", text.as_bytes())?);
     }
     let mut channels: BTreeMap<&str, (u16, u32)> = BTreeMap::new();

@@ -41,7 +41,8 @@ function gate(g, next) {
   const inside = g.radius, outside = 0.5 * g.outer, solid = next ? ORANGE : SLATE;
   const ring = half => [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([l, u]) => corner(g, l * half, u * half));
   const [a, b] = [ring(inside), ring(outside)];
-  pen.globalAlpha = g.virtual ? 0.55 : 0.85;
+  // Through a gate that stands before the viewer the vehicle is seen.
+  pen.globalAlpha = g.virtual ? 0.55 : !camera.flat && seen(g.centre)[2] < 4 ? 0.45 : 0.85;
   if (g.virtual) {
     const round = Array.from({ length: 25 }, (_, k) => corner(g, inside * Math.cos(k * Math.PI / 12), inside * Math.sin(k * Math.PI / 12)));
     pen.setLineDash([6, 5]);
