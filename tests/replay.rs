@@ -132,7 +132,7 @@ fn the_page_plays_in_a_browser() {
     let track = Track::load("square").unwrap();
     let text = page(&recorded(&log(&track), Some(&track)).unwrap());
     assert!(!text.contains("http"), "the page is to need nothing from elsewhere");
-    assert!(text.contains("led &lt;b&gt;along&lt;/b&gt;"));
+    assert!(text.contains("<title>led &lt;b>along"));
     // Seconds forward, the camera above, and how many colours the picture then has.
     let script = "
         const press = (key, shiftKey) => window.dispatchEvent(new KeyboardEvent('keydown', { key, shiftKey }));

@@ -73,11 +73,11 @@ pub struct Flights {
 
 /// Which vehicles the agents fly.
 #[derive(Clone, Copy, Debug)]
-pub enum Fleet {
+pub enum Fleet<'a> {
     /// The first agent a nominal one, the others with every factor drawn.
     Randomised,
     /// All agents the same: the nominal one with these factors and, at the start, this charge of its battery, 0 to 1.
-    Same(Factors, f64),
+    Same(&'a Factors, f64),
 }
 
 /// Flies `agents` agents from `place` for at most `max_steps` steps; agent 0 is nominal, the others draw every factor.
@@ -109,12 +109,12 @@ pub fn fly_fleet(
     all
 }
 
-impl Fleet {
+impl Fleet<'_> {
     fn draw(&self, race: &Race, rng: &mut Sequence, place: Place, agent: usize) -> Start {
         match *self {
             Fleet::Randomised => reset::draw(race, rng, place, (agent == 0).then_some(Factors::NOMINAL)),
             Fleet::Same(factors, charge) => {
-                let mut start = reset::draw(race, rng, place, Some(factors));
+                let mut start = reset::draw(race, rng, place, Some(*factors));
                 start.state.voltage = race.vehicle.battery.at(charge);
                 start
             }
@@ -126,7 +126,7 @@ struct Fly<'a> {
     race: &'a Race,
     network: &'a Network<f32>,
     place: Place,
-    fleet: Fleet,
+    fleet: Fleet<'a>,
     first: usize,
     agents: usize,
     max_steps: u32,

@@ -61,13 +61,13 @@ pub fn sensitivity(
     observer: &mut dyn FnMut(f64),
 ) -> Sensitivity {
     let race = Race { noisy: true, ..race.scored(track) };
-    let cell = |fleet: Fleet, value: f64| {
+    let cell = |(factors, charge): (Factors, f64), value: f64| {
         let steps = config.max_steps as u32;
-        let flights = fly_fleet(level, &race, network, Place::Pad, fleet, config.agents, steps);
+        let flights = fly_fleet(level, &race, network, Place::Pad, Fleet::Same(&factors, charge), config.agents, steps);
         let scored = score(track, &flights);
         Cell { value, completion: scored.lap_completion, lap_s: scored.lap_time_s.map(|time| time.median) }
     };
-    let nominal = cell(Fleet::Same(Factors::NOMINAL, 1.0), 1.0);
+    let nominal = cell((Factors::NOMINAL, 1.0), 1.0);
     let all = Parameter::all();
     let mut parameters = Vec::new();
     for (done, parameter) in all.iter().enumerate() {
@@ -75,7 +75,7 @@ pub fn sensitivity(
         let cells: Vec<Cell> = parameter
             .values()
             .into_iter()
-            .map(|value| if value == 1.0 { nominal } else { cell(parameter.fleet(value), value) })
+            .map(|value| if value == 1.0 { nominal } else { cell(parameter.vehicle(value), value) })
             .collect();
         parameters.push(Row {
             parameter: parameter.name(),

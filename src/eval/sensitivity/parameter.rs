@@ -1,7 +1,6 @@
 //! The parameters that a vehicle is randomised in, one at a time.
 
 use crate::dynamics::Factors;
-use crate::eval::fly::Fleet;
 use crate::vehicle::randomize::RandomizeConfig;
 
 /// One randomised factor.
@@ -54,8 +53,8 @@ impl Parameter {
         }
     }
 
-    /// The nominal vehicle but for this value.
-    pub fn fleet(self, value: f64) -> Fleet {
+    /// The factors and the charge of a vehicle that is nominal but for this value.
+    pub fn vehicle(self, value: f64) -> (Factors, f64) {
         let mut factors = Factors::NOMINAL;
         let mut charge = 1.0;
         match self {
@@ -65,7 +64,7 @@ impl Parameter {
             Parameter::Drag => factors.drag = value,
             Parameter::Charge => charge = value,
         }
-        Fleet::Same(factors, charge)
+        (factors, charge)
     }
 }
 
@@ -78,7 +77,7 @@ mod tests {
         let names: std::collections::BTreeSet<_> = Parameter::all().into_iter().map(Parameter::name).collect();
         assert_eq!(names.len(), 10);
         assert_eq!(Parameter::Charge.values().first(), Some(&0.0));
-        let Fleet::Same(factors, charge) = Parameter::MaxRate(1).fleet(0.7) else { panic!("one vehicle") };
+        let (factors, charge) = Parameter::MaxRate(1).vehicle(0.7);
         assert_eq!((factors.max_rate, factors.thrust, charge), ([1.0, 0.7, 1.0], 1.0, 1.0));
     }
 }
