@@ -1,10 +1,10 @@
 //! The reference lap: how fast a vehicle could be whose attitude followed at once.
 //!
 //! A point mass with the vehicle's largest thrust at a stated battery voltage, in any direction at any time, with gravity and
-//! with the drag that the vehicle's own equations give it in the attitude that the thrust asks for, flies a closed lap through
-//! the apertures that a race is scored by, in their directions, and within the track's volume. Where it crosses an aperture is
-//! free. It flies the lap again and again: it ends as fast as it began. In none of this the vehicle does better: what is left out is that
-//! it has to turn before it can push.
+//! with the drag that the vehicle's own equations give it in the attitude that has least, flies a closed lap through the
+//! apertures that a race is scored by, in their directions, and within the track's volume. Where it crosses an aperture is free.
+//! It flies the lap again and again: it ends as fast as it began. In none of this does the vehicle do better, and it has to turn
+//! before it can push.
 //!
 //! The lap is transcribed directly: places at equal times between gates, the times between gates and all places unknown,
 //! acceleration and velocity by differences. The time is minimised by Newton's method through logarithmic barriers ([`barrier`]),
