@@ -81,15 +81,23 @@ fn timeless(replay: &Replay) -> Result<Vec<Message>> {
     Ok(messages)
 }
 
-/// Numbers that are not known become null.
+/// Without numbers that are not known, which JSON has as null: a plot has a gap there.
+fn known(mut message: Value) -> Value {
+    if let Some(fields) = message.as_object_mut() {
+        fields.retain(|_, value| !value.is_null());
+        fields.values_mut().for_each(|value| *value = known(value.take()));
+    }
+    message
+}
+
 fn commands(ns: u64, frame: &Frame) -> Value {
     let [roll, pitch, yaw, thrust] = frame.command;
-    json!({ "timestamp": stamp(ns), "roll": roll, "pitch": pitch, "yaw": yaw, "thrust": thrust })
+    known(json!({ "timestamp": stamp(ns), "roll": roll, "pitch": pitch, "yaw": yaw, "thrust": thrust }))
 }
 
 fn state(ns: u64, frame: &Frame) -> Value {
     let vector = |[x, y, z]: [f64; 3]| json!({ "x": x, "y": y, "z": z });
-    json!({
+    known(json!({
         "timestamp": stamp(ns),
         "position_m": vector(frame.position),
         "velocity_m_s": vector(frame.velocity),
@@ -97,7 +105,7 @@ fn state(ns: u64, frame: &Frame) -> Value {
         "body_rates_rad_s": vector(frame.rates),
         "voltage_v": frame.voltage,
         "target_gate": frame.target.map_or(-1, |gate| gate as i64),
-    })
+    }))
 }
 
 fn observation(ns: u64, seen: &[f32]) -> Value {

@@ -13,7 +13,7 @@ pub fn schema(name: &str, examples: &[&Value]) -> Value {
 }
 
 fn described(values: &[&Value]) -> Value {
-    // Numbers that are not known are null; Foxglove reads no lists of types.
+    // Foxglove reads no lists of types, such as a number or null.
     let Some(first) = values.iter().find(|value| !value.is_null()) else { return json!({ "type": "number" }) };
     match first {
         Value::Object(fields) if fields.len() == 2 && fields.contains_key("nsec") => json!({

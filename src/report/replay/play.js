@@ -27,6 +27,12 @@ function choose(i) {
   chosen = (i + vehicles.length) % vehicles.length;
   get("vehicle").value = chosen;
   const v = vehicles[chosen];
+  if (!track) {
+    get("about").textContent = `${v.time.length} moments; without a track`;
+    ticks(v);
+    stale = true;
+    return;
+  }
   const laps = v.laps.length ? "laps " + v.laps.map(l => l.toFixed(2) + " s").join(", ") : "no lap completed";
   get("about").textContent = `${laps}; ${v.passes.length} gates passed` + (v.failure ? `; ended: ${v.failure}` : "");
   ticks(v);
