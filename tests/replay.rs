@@ -133,19 +133,20 @@ fn the_page_plays_in_a_browser() {
     let text = page(&recorded(&log(&track), Some(&track)).unwrap());
     assert!(!text.contains("http"), "the page is to need nothing from elsewhere");
     assert!(text.contains("<title>led &lt;b>along"));
-    // Seconds forward, the camera above, and how many colours the picture then has.
+    // Seconds forward, the camera above, how many colours the picture then has, and playing from the beginning. The page draws when
+    // the browser lets it: each step waits for the one before.
     let script = "
         const press = (key, shiftKey) => window.dispatchEvent(new KeyboardEvent('keydown', { key, shiftKey }));
-        setTimeout(() => { press('ArrowRight', true); press('ArrowRight'); press('3'); }, 200);
-        setTimeout(() => {
+        const note = document.body.dataset;
+        const when = (done, then) => { if (done()) then(); else setTimeout(() => when(done, then), 20); };
+        press('ArrowRight', true); press('ArrowRight'); press('3');
+        when(() => note.drawn === '1.100', () => {
             const pixels = pen.getImageData(0, 0, view.width, view.height).data, seen = new Set();
             for (let i = 0; i < pixels.length; i += 4) seen.add(pixels[i] << 16 | pixels[i + 1] << 8 | pixels[i + 2]);
-            document.body.dataset.colours = seen.size > 100 ? 'many' : 'few';
-            document.body.dataset.at = document.body.dataset.drawn;
-            document.body.dataset.mode = camera.mode;
+            [note.colours, note.at, note.mode] = [seen.size > 100 ? 'many' : 'few', note.drawn, camera.mode];
             press('Home'); press(' ');
-        }, 800);
-        setTimeout(() => { document.body.dataset.played = time > 0.5 ? 'on' : String(time); }, 2500);";
+            when(() => time > 0.1 && time < 1 && playing, () => { note.played = 'on'; });
+        });";
     let Some(document) = browsed(&text, script) else { return };
     assert_eq!(after(&document, "data-at=\""), "1.100");
     assert_eq!(after(&document, "data-mode=\""), "top");
