@@ -13,9 +13,11 @@ mod import;
 mod interrupt;
 mod pool;
 mod progress;
+mod replay;
 mod report;
 mod study;
 mod table;
+mod track;
 mod train;
 
 use crate::check::BadInput;
@@ -36,6 +38,8 @@ enum Command {
     Train(train::Args),
     Eval(eval::Args),
     Fly(fly::Args),
+    Replay(replay::Args),
+    Track(track::Args),
     Import(import::Args),
     Check(check::Args),
     Identify(identify::Args),
@@ -86,6 +90,8 @@ pub fn main() -> ExitCode {
         Command::Train(args) => train::run(&args),
         Command::Eval(args) => eval::run(&args),
         Command::Fly(args) => fly::run(&args),
+        Command::Replay(args) => replay::run(&args),
+        Command::Track(args) => track::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),

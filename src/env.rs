@@ -14,7 +14,6 @@ use crate::dynamics::attitude::{body_axes, dot};
 use crate::dynamics::{self, Factors, Parameters, State};
 use crate::lane::{Bits, LANES, Lane, Lane32, Mask, build, each, sum_of_squares};
 use crate::rng::Philox;
-use crate::track::spline::Spline;
 use crate::track::{Pose, Track};
 use crate::vehicle::Vehicle;
 use crate::vehicle::randomize::RandomizeConfig;
@@ -139,18 +138,11 @@ impl Race {
     /// the configuration.
     pub fn new(config: &EnvConfig, track: &Track, vehicle: &Vehicle, seed: u64) -> Self {
         let gates = gates::frames(track, Some(config.gate_radius_m));
-        // The paper's spline passes the start and all gate centres.
-        let points: Vec<_> =
-            std::iter::once(track.start.position()).chain(track.gates.iter().map(|g| g.position())).collect();
-        let lap = Spline::through(&points)
+        let lap = track
+            .reset_spline()
             .samples(LAP_POINTS)
             .into_iter()
-            .map(|s| LapPoint {
-                position: s.position,
-                tangent: s.tangent,
-                // Control point 0 is the start, whose next gate is the first.
-                target: s.next.saturating_sub(1),
-            })
+            .map(|s| LapPoint { position: s.position, tangent: s.tangent, target: track.gate_after(s.next) })
             .collect();
         Race {
             config: config.clone(),

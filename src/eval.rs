@@ -2,7 +2,10 @@
 
 pub mod choose;
 pub mod fly;
+pub mod pace;
 pub mod score;
+pub mod sensitivity;
+pub mod spread;
 
 use crate::check::{Check, Invalid};
 use crate::env::Race;

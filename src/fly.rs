@@ -1,6 +1,6 @@
 //! Flying in the simulator and recording what a real vehicle's log would hold.
 
-mod race;
+pub mod race;
 mod recorder;
 
 use crate::dynamics::{Factors, Parameters, State, thrust::specific_thrust};
@@ -86,9 +86,10 @@ pub fn by_policy(
     seconds: f64,
 ) -> Flown {
     let steps = (seconds / race.dt).round() as usize;
-    let raced = dispatch(level, race::Fly { race, network, steps });
+    let fly = race::Fly { race, network, first: 0, vehicles: 1, steps, gates: usize::MAX, seen: false };
+    let raced = dispatch(level, fly).remove(0);
     let mut recorder = Recorder::new(&race.vehicle, sensors, seed);
-    for (state, command) in &raced.steps {
+    for (state, command, _) in &raced.steps {
         recorder.hold(&state.map(f64::from), command.map(f64::from));
     }
     let crossings: Vec<f64> = raced.passes.iter().step_by(race.gates.len()).copied().collect();

@@ -19,11 +19,12 @@ pub mod dynamics;
 pub mod effects;
 pub mod track;
 pub mod vehicle;
-// Batches of vehicles, networks, flight logs, the excitation pilot.
+// Batches of vehicles, networks, flight logs, the excitation pilot, the fastest lap of a point mass.
 pub mod flight;
 pub mod nn;
 pub mod pilot;
 pub mod policy;
+pub mod reference;
 pub mod sim;
 // The race, learning it, scoring it, recording it; the vehicle from its flights.
 pub mod diagnose;
@@ -36,6 +37,7 @@ pub mod ppo;
 pub mod bench;
 pub mod config;
 pub mod peak;
+pub mod replay;
 pub mod report;
 pub mod run;
 pub mod snapshot;

@@ -1,10 +1,14 @@
 //! Pictures of a run. They draw numbers and compute none.
 
+pub mod commands;
 pub mod diagnosis;
 pub mod identification;
 pub mod lap;
+mod map;
 mod page;
 mod plot;
+pub mod replay;
+pub mod spread;
 pub mod study;
 pub mod training;
 

@@ -27,6 +27,8 @@ pub enum Stream {
     Sensors = 8,
     /// Seeds drawn again for the ranking of a study.
     Bootstrap = 9,
+    /// First laps that a reference lap is looked for from.
+    Reference = 10,
 }
 
 /// The generator's key.

@@ -4,9 +4,11 @@
 
 mod check;
 mod gate;
+mod shape;
 pub mod spline;
 
 pub use gate::{Gate, GateKind};
+pub use shape::Shape;
 
 use crate::check::BadInput;
 use crate::document::Library;

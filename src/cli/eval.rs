@@ -1,15 +1,19 @@
 //! `racer eval`: what a policy is worth.
 
+mod sensitivity;
+
 use super::pool::{pool, threads};
 use super::{Outcome, table, tell};
 use crate::check::BadInput;
 use crate::env::Race;
 use crate::env::reset::Place;
-use crate::eval::{Report, benchmark};
+use crate::eval::pace::Pace;
+use crate::eval::{EvalConfig, Report, benchmark};
 use crate::fsio::Reserved;
 use crate::lane::Level;
+use crate::nn::Network;
 use crate::run::{self, Found};
-use crate::snapshot::Snapshot;
+use crate::snapshot::{About, Snapshot};
 use crate::vehicle::Vehicle;
 use clap::ValueEnum;
 use serde::Serialize;
@@ -31,6 +35,10 @@ pub struct Args {
     /// Vehicles: one nominal, all others with every factor drawn [default: as configured, 512]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     agents: Option<u32>,
+    /// Fly nominal vehicles in which one parameter at a time is wrong by a factor of 0.5 to 1.5, and print what that costs; from the
+    /// pad, with the noise of the training, without which all flights of a cell would be one [default: 128 agents in each cell]
+    #[arg(long, conflicts_with_all = ["start", "require"])]
+    sensitivity: bool,
     /// Exit with code 4 where a smaller share than this of the fixed-start agents completes a lap
     #[arg(long, value_name = "SHARE", value_parser = parse_share)]
     require: Option<f64>,
@@ -47,7 +55,10 @@ pub struct Args {
 
 const HELP: &str = "The deterministic mean policy flies without observation or action noise through the gates' full \
 apertures, for at most 1000 steps unless configured otherwise. The paper deploys a policy where 95 % of fixed-start \
-agents complete a lap: `racer eval latest --require 0.95`.";
+agents complete a lap: `racer eval latest --require 0.95`.
+
+Laps are measured flying, from a crossing of the first gate to its next. The reference lap beside them is that of a point mass \
+with the vehicle's thrust and least drag (`racer track show --help`); the ratio of a policy is always above 1.";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Start {
@@ -77,6 +88,9 @@ struct File<'a> {
     max_steps: usize,
     #[serde(flatten)]
     report: &'a Report,
+    /// The median laps beside the reference lap of the vehicle that was flown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pace: &'a Option<Pace>,
 }
 
 /// Evaluates, prints and writes.
@@ -90,6 +104,10 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let mut config = about.eval.clone();
     config.agents = args.agents.map_or(config.agents, |agents| agents as usize);
     let other = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
+    if args.sensitivity {
+        config.agents = args.agents.map_or(sensitivity::AGENTS, |agents| agents as usize);
+        return sensitive(args, &found, other.as_ref(), &network, &about, &config);
+    }
     let default = || default_file(&found, other.as_ref(), args.start, config.agents);
     let file = Reserved::new(&args.out.clone().unwrap_or_else(default))?;
 
@@ -100,6 +118,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         fixed: (args.start != Start::Random).then(|| fly(Place::Pad)),
         random: (args.start != Start::Fixed).then(|| fly(Place::Spline)),
     });
+    let pace = Pace::of(&report, &about.track, vehicle);
     let content = File {
         snapshot: found.snapshot.display().to_string(),
         track: &about.track.name,
@@ -109,6 +128,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         seed: about.seed,
         max_steps: config.max_steps,
         report: &report,
+        pace: &pace,
     };
     let json = serde_json::to_string_pretty(&content)?;
     let written = file.write(format!("{json}\n").as_bytes())?;
@@ -118,10 +138,28 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         let million = about.steps as f64 / 1e6;
         let flown = other.as_ref().map_or(String::new(), |other| format!(" in {}", other.name));
         let title = format!("{} on {}{flown} after {million:.1} M steps", content.snapshot, content.track);
-        super::print(&format!("{title}\n\n{}", table::report(&report)))?;
+        super::print(&format!("{title}\n\n{}{}", table::report(&report), table::pace(pace.as_ref())))?;
     }
     tell(&format!("written to {}", written.display()));
     Ok(judge(args.require, &report))
+}
+
+/// `--sensitivity`.
+fn sensitive(
+    args: &Args,
+    found: &Found,
+    other: Option<&Vehicle>,
+    network: &Network<f32>,
+    about: &About,
+    config: &EvalConfig,
+) -> anyhow::Result<Outcome> {
+    let vehicle = other.unwrap_or(&about.vehicle);
+    let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
+    let default = || beside(found, &format!("sensitivity-{}{}.json", named(other), config.agents));
+    let out = Reserved::new(&args.out.clone().unwrap_or_else(default))?;
+    let flown = sensitivity::Flown { race: &race, track: &about.track, network, config };
+    let snapshot = found.snapshot.display().to_string();
+    sensitivity::run(&snapshot, &flown, args.threads, args.json, out)
 }
 
 fn judge(require: Option<f64>, report: &Report) -> Outcome {
@@ -136,14 +174,20 @@ fn judge(require: Option<f64>, report: &Report) -> Outcome {
 /// A name that says what was measured, and that is still free.
 fn default_file(found: &Found, other: Option<&Vehicle>, start: Start, agents: usize) -> PathBuf {
     let start = format!("{start:?}").to_lowercase();
-    let other = other.map_or(String::new(), |other| format!("{}-", run::plain(&other.name)));
+    beside(found, &format!("evaluation-{}{start}-{agents}.json", named(other)))
+}
+
+/// The other vehicle as part of a name.
+fn named(other: Option<&Vehicle>) -> String {
+    other.map_or(String::new(), |other| format!("{}-", run::plain(&other.name)))
+}
+
+/// A free file of this name beside the policy, which a snapshot's name leads.
+fn beside(found: &Found, name: &str) -> PathBuf {
     let name = match &found.run {
-        Some(_) => format!("evaluation-{other}{start}-{agents}.json"),
-        None => {
-            let policy = found.snapshot.file_stem().unwrap_or_default().to_string_lossy();
-            format!("{policy}-evaluation-{other}{start}-{agents}.json")
-        }
+        Some(_) => name.into(),
+        None => format!("{}-{name}", found.snapshot.file_stem().unwrap_or_default().to_string_lossy()),
     };
-    let beside = found.run.as_deref().or(found.snapshot.parent()).unwrap_or(Path::new(""));
-    run::free(&beside.join(name))
+    let folder = found.run.as_deref().or(found.snapshot.parent()).unwrap_or(Path::new(""));
+    run::free(&folder.join(name))
 }

@@ -70,7 +70,8 @@ const SHORTEST_PILOT_S: f64 = 40.0;
 /// Thrust over weight of the vehicles that the pilot is made for.
 const PILOT_THRUST: [f64; 2] = [2.5, 8.0];
 
-fn parse_seconds(text: &str) -> Result<f64, String> {
+/// The value of `--seconds`.
+pub fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
         _ => Err("expected 0.1 to 3600".into()),

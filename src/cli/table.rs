@@ -2,6 +2,7 @@
 
 use crate::eval::Report;
 use crate::eval::choose::DEPLOYABLE;
+use crate::eval::pace::Pace;
 use crate::eval::score::{Benchmark, LapTime};
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -45,6 +46,20 @@ pub fn report(report: &Report) -> String {
         format!("\ncriterion for deployment, {} of fixed starts: {met}", percent(DEPLOYABLE))
     });
     format!("{:<28}{header}\n{text}{}{}", "", failures, criterion.unwrap_or_default())
+}
+
+/// The median laps over the reference lap, in the columns of [`report`].
+pub fn pace(pace: Option<&Pace>) -> String {
+    let Some(pace) = pace else { return String::new() };
+    let ratios: Vec<_> = [("fixed", pace.fixed), ("random", pace.random)]
+        .into_iter()
+        .filter_map(|(name, ratio)| Some(format!("{:.3} from {name} starts", ratio?)))
+        .collect();
+    let ratios = if ratios.is_empty() { "no lap completed".into() } else { ratios.join(", ") };
+    format!(
+        "\nmedian lap over the reference lap: {ratios}\n  reference lap {:.2} s at {:.1} V: {}",
+        pace.reference_s, pace.voltage_v, pace.method
+    )
 }
 
 /// The gates at which most flights ended, and why.

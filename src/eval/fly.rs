@@ -1,13 +1,13 @@
 //! Flying a policy's deterministic mean, many agents side by side.
 
 use crate::dynamics::Factors;
-use crate::env::reset::{self, Place};
+use crate::env::reset::{self, Place, Start};
 use crate::env::terminate::CAUSES;
 use crate::env::{Block, Race, lanes};
 use crate::lane::{Kernel, LANES, Lane32, Level, Mask, build, dispatch, sum_of_squares};
 use crate::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use crate::policy::ACTIONS;
-use crate::rng::Stream;
+use crate::rng::{Sequence, Stream};
 use rayon::prelude::*;
 
 /// Steps over which commands are judged: the paper's first four seconds.
@@ -71,12 +71,34 @@ pub struct Flights {
     pub trace: Vec<Moment>,
 }
 
+/// Which vehicles the agents fly.
+#[derive(Clone, Copy, Debug)]
+pub enum Fleet<'a> {
+    /// The first agent a nominal one, the others with every factor drawn.
+    Randomised,
+    /// All agents the same: the nominal one with these factors and, at the start, this charge of its battery, 0 to 1.
+    Same(&'a Factors, f64),
+}
+
 /// Flies `agents` agents from `place` for at most `max_steps` steps; agent 0 is nominal, the others draw every factor.
 /// Runs on the current rayon pool; the result does not depend on it.
 pub fn fly(level: Level, race: &Race, network: &Network<f32>, place: Place, agents: usize, max_steps: u32) -> Flights {
+    fly_fleet(level, race, network, place, Fleet::Randomised, agents, max_steps)
+}
+
+/// [`fly`] with the vehicles of `fleet`.
+pub fn fly_fleet(
+    level: Level,
+    race: &Race,
+    network: &Network<f32>,
+    place: Place,
+    fleet: Fleet,
+    agents: usize,
+    max_steps: u32,
+) -> Flights {
     let tiles: Vec<_> = (0..agents.div_ceil(TILE_SAMPLES))
         .into_par_iter()
-        .map(|tile| dispatch(level, Fly { race, network, place, first: tile * TILE_SAMPLES, agents, max_steps }))
+        .map(|tile| dispatch(level, Fly { race, network, place, fleet, first: tile * TILE_SAMPLES, agents, max_steps }))
         .collect();
     let mut all = Flights { flights: Vec::with_capacity(agents), trace: Vec::new() };
     for mut tile in tiles {
@@ -87,10 +109,24 @@ pub fn fly(level: Level, race: &Race, network: &Network<f32>, place: Place, agen
     all
 }
 
+impl Fleet<'_> {
+    fn draw(&self, race: &Race, rng: &mut Sequence, place: Place, agent: usize) -> Start {
+        match *self {
+            Fleet::Randomised => reset::draw(race, rng, place, (agent == 0).then_some(Factors::NOMINAL)),
+            Fleet::Same(factors, charge) => {
+                let mut start = reset::draw(race, rng, place, Some(*factors));
+                start.state.voltage = race.vehicle.battery.at(charge);
+                start
+            }
+        }
+    }
+}
+
 struct Fly<'a> {
     race: &'a Race,
     network: &'a Network<f32>,
     place: Place,
+    fleet: Fleet<'a>,
     first: usize,
     agents: usize,
     max_steps: u32,
@@ -101,7 +137,7 @@ impl Kernel for Fly<'_> {
 
     #[inline(always)]
     fn run<L: Lane32>(self) -> Flights {
-        let Fly { race, network, place, first, agents, max_steps } = self;
+        let Fly { race, network, place, fleet, first, agents, max_steps } = self;
         let mut out = Flights { flights: vec![Flight::default(); TILE_SAMPLES], trace: Vec::new() };
         let mut blocks: [Block<L>; TILE_BLOCKS] = build!(|b| race.empty_block((first + b * LANES) as u32));
         // Bits of lanes still flying; padding lanes never start.
@@ -110,7 +146,7 @@ impl Kernel for Fly<'_> {
             for lane in 0..LANES {
                 let agent = first + b * LANES + lane;
                 let mut rng = race.rng.sequence(Stream::Evaluation, agent as u32, 0);
-                let start = reset::draw(race, &mut rng, place, (agent == 0).then_some(Factors::NOMINAL));
+                let start = fleet.draw(race, &mut rng, place, agent);
                 block.begin(race, lane, &start);
                 out.flights[b * LANES + lane].first_gate = start.target;
                 alive[b] |= u32::from(agent < agents) << lane;

@@ -76,6 +76,13 @@ impl Spline {
         self.segments[segment].tangent(t)
     }
 
+    /// Curvature at arc length `s`, 1/m; any `s`. At a control point that of the segment after it: the curve has no kinks there,
+    /// but its curvature jumps.
+    pub fn curvature(&self, s: f64) -> f64 {
+        let (segment, t) = self.locate(s);
+        self.segments[segment].curvature(t)
+    }
+
     /// The place at arc length `s`; any `s`.
     pub fn sample(&self, s: f64) -> Sample {
         let (segment, t) = self.locate(s);
@@ -127,6 +134,14 @@ impl Segment {
     fn derivative(&self, t: f64) -> Vector3<f64> {
         let [_, b, c, d] = self.0;
         b + (2.0 * c + 3.0 * d * t) * t
+    }
+
+    /// 0 where the curve stands still.
+    fn curvature(&self, t: f64) -> f64 {
+        let [_, _, c, d] = self.0;
+        let (first, second) = (self.derivative(t), 2.0 * c + 6.0 * d * t);
+        let curvature = first.cross(&second).norm() / first.norm().powi(3);
+        if curvature.is_finite() { curvature } else { 0.0 }
     }
 
     /// Where the curve stands still, as it does at the ends of a line flown there and back, the chord's direction.
@@ -189,7 +204,9 @@ mod tests {
     fn the_length_of_a_circle_of_points() {
         let angle = |i: u32| f64::from(i) / 64.0 * TAU;
         let points: Vec<_> = (0..64).map(|i| Vector3::new(5.0 * angle(i).cos(), 5.0 * angle(i).sin(), 2.0)).collect();
-        assert!((Spline::through(&points).length() / (5.0 * TAU) - 1.0).abs() < 1e-5);
+        let spline = Spline::through(&points);
+        assert!((spline.length() / (5.0 * TAU) - 1.0).abs() < 1e-5);
+        assert!(spline.samples(200).iter().all(|s| (5.0 * spline.curvature(s.arc_length) - 1.0).abs() < 0.01));
     }
 
     #[test]

@@ -1,0 +1,100 @@
+//! `racer eval --sensitivity`: which error of the model costs a policy most.
+
+use super::super::{Outcome, columns, pool, print, tell};
+use crate::env::Race;
+use crate::eval::EvalConfig;
+use crate::eval::sensitivity::{Cell, Row, Sensitivity, sensitivity};
+use crate::fsio::Reserved;
+use crate::lane::Level;
+use crate::nn::Network;
+use crate::track::Track;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+/// Agents in each cell unless asked otherwise.
+pub const AGENTS: usize = 128;
+
+/// What is written and, with `--json`, printed.
+#[derive(Serialize)]
+struct File<'a> {
+    snapshot: &'a str,
+    track: &'a str,
+    vehicle: &'a str,
+    #[serde(flatten)]
+    found: &'a Sensitivity,
+}
+
+/// Who flies where.
+pub struct Flown<'a> {
+    pub race: &'a Race,
+    pub track: &'a Track,
+    pub network: &'a Network<f32>,
+    pub config: &'a EvalConfig,
+}
+
+/// Flies, prints and writes.
+pub fn run(
+    snapshot: &str,
+    flown: &Flown,
+    threads: Option<usize>,
+    json: bool,
+    out: Reserved,
+) -> anyhow::Result<Outcome> {
+    let Flown { race, track, network, config } = *flown;
+    let bar = ProgressBar::new(100);
+    bar.set_style(ProgressStyle::with_template("{bar:24} {percent:>3} %")?);
+    let found = pool::pool(pool::threads(threads))?.install(|| {
+        let mut observer = |share: f64| bar.set_position((100.0 * share) as u64);
+        sensitivity(Level::best(), race, track, network, config, &mut observer)
+    });
+    bar.finish_and_clear();
+    let file = File { snapshot, track: &track.name, vehicle: &race.vehicle.name, found: &found };
+    let content = serde_json::to_string_pretty(&file)?;
+    let written = out.write(format!("{content}\n").as_bytes())?;
+    print(&if json { content } else { text(&file) })?;
+    tell(&format!("written to {}", written.display()));
+    Ok(Outcome::Done)
+}
+
+fn text(file: &File) -> String {
+    let Sensitivity { agents, nominal, parameters } = file.found;
+    let (charge, factors): (Vec<_>, Vec<_>) = parameters.iter().partition(|row| row.parameter == "charge");
+    format!(
+        "{} on {} in {}: {agents} flights a cell, with the training's noise; nominal {}\n\n\
+         laps completed, %, and median lap, s, with this factor on one parameter alone; * outside of what was trained\n{}\n\n\
+         the same for the charge of the battery at the start, 0 empty, 1 full\n{}",
+        file.snapshot,
+        file.track,
+        file.vehicle,
+        cell(nominal).replace('\n', " %, lap ") + " s",
+        table(&factors),
+        table(&charge)
+    )
+}
+
+fn table(rows: &[&Row]) -> String {
+    let Some(first) = rows.first() else { return String::new() };
+    let values: Vec<_> = first.cells.iter().map(|cell| format!("{:.1}", cell.value)).collect();
+    let header: Vec<&str> = ["parameter", "mean loss, %", "slower by, s", "95 % holds"]
+        .into_iter()
+        .chain(values.iter().map(String::as_str))
+        .collect();
+    let lines = rows.iter().map(|row| {
+        let holds = row.holds.map_or("nowhere".into(), |[low, high]| format!("{low:.1} - {high:.1}"));
+        let slower = row.slower_s.map_or("-".into(), |slower| format!("{slower:.2}"));
+        let mut line = vec![row.parameter.clone(), format!("{:.1}", 100.0 * row.loss), slower, holds];
+        line.extend(row.cells.iter().map(|each| {
+            let [low, high] = row.trained;
+            let inside = (low - 1e-9..=high + 1e-9).contains(&each.value);
+            if inside { cell(each) } else { cell(each).replace('\n', "*\n") }
+        }));
+        line
+    });
+    let count = header.len();
+    columns::table(&header, lines.collect(), 1..count)
+}
+
+fn cell(cell: &Cell) -> String {
+    let lap = cell.lap_s.map_or("-".into(), |lap| format!("{lap:.2}"));
+    format!("{:.0}\n{lap}", 100.0 * cell.completion)
+}
