@@ -111,7 +111,7 @@ fn browsed(page: &str, script: &str) -> Option<String> {
     let profile = format!("--user-data-dir={}", folder.path().join("profile").display());
     let output = Command::new(browser)
         .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=1280,800", &profile])
-        .args(["--virtual-time-budget=4000", "--dump-dom"])
+        .args(["--virtual-time-budget=30000", "--dump-dom"])
         .arg(format!("file://{}", path.display()))
         .output()
         .unwrap();
