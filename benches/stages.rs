@@ -35,7 +35,7 @@ fn iteration(c: &mut Criterion) {
     group.sample_size(10).throughput(Throughput::Elements(config.ppo.samples() as u64));
     for level in Level::available() {
         let mut training = Training::new(level, &race, &config.ppo, 1);
-        group.bench_function(format!("rollout/{level}"), |b| b.iter(|| training.collect()));
+        group.bench_function(format!("rollout/{level}"), |b| b.iter(|| training.collect(&race)));
         group.bench_function(format!("whole/{level}"), |b| b.iter(|| training.iterate(0.0)));
     }
 }

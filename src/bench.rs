@@ -79,7 +79,7 @@ pub fn measure(
             let environment = environment(&race, level, threads, config.ppo.rollout, part);
             let mut training = Training::new(level, &race, &config.ppo, config.seed);
             let batch = training.batch() as f64;
-            let rollout = batch / best(part, || training.collect());
+            let rollout = batch / best(part, || training.collect(&race));
             // The peak is taken before and after: clocks drift.
             let before = peak::flops_per_s(level, part / 2);
             let trained = batch / best(part, || training.iterate(0.0));

@@ -18,6 +18,7 @@ pub mod gram;
 pub mod horizon;
 pub mod judge;
 pub mod model;
+pub mod place;
 pub mod plan;
 pub mod predict;
 pub mod problem;
@@ -52,6 +53,8 @@ const IDLE: [f64; 3] = [0.025, 0.08, 0.02];
 /// Structure beside the noise, and beside what the findings explain of the same channel, that is called unexplained.
 const LEFT_OF_NOISE: f64 = 0.15;
 const LEFT_OF_EXPLAINED: f64 = 0.2;
+/// Structure that lines up with a signal counts from this share of those sizes on.
+const SURER: f64 = 0.37;
 /// What a finding explains has to be so many times the structure that is left.
 const ADEQUATE: f64 = 1.5;
 
@@ -95,8 +98,11 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     if let (Some(lost), Some(finding)) = (lost, findings.iter_mut().find(|f| f.effect == "command_dropout")) {
         finding.counted(&lost);
     }
+    let placed = structure.iter().any(|s| s.along == Some(structure::PLACE));
     let force_structure = structure.iter().filter(|s| s.channel.starts_with("specific force")).map(|s| s.structure_rms);
-    findings.extend(random::gusts(&problem, &selection, force_structure.fold(0.0, f64::max)));
+    if !placed {
+        findings.extend(random::gusts(&problem, &selection, force_structure.fold(0.0, f64::max)));
+    }
     let (drift, cause) = drift::find(&judge);
     findings.extend(cause);
     watch("measuring the gain", 0.9);
@@ -106,12 +112,16 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         let all = one.map_or(held.channels.clone(), |j| held.of_one(&problem, &j.change));
         finding.gain = all.into_iter().filter(|(c, _)| finding.explained.contains_key(c)).collect();
     }
-    let unexplained = unexplained(&structure, &findings, &selection, &problem);
+    let unexplained = unexplained(&structure, &findings, &selection);
     for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected) {
         if let Some(channel) = outweighed(finding, &structure) {
             finding.status = Status::Suspected;
             finding.why = Some(format!("more structure remains in {channel} than it explains"));
         }
+    }
+    for finding in findings.iter_mut().filter(|f| placed && f.effect == "steady_wind") {
+        finding.status = Status::Suspected;
+        finding.why = Some("the wind is not the same everywhere".into());
     }
     // A move of the base explains nothing where its channel still has structure.
     let open = unexplained.iter().any(|s| s.channel == "specific force z");
@@ -216,12 +226,7 @@ fn biases(judge: &Judge) -> Vec<Judged> {
 }
 
 /// Channels in which structure is left that matters, beside the noise and beside what the findings explain.
-fn unexplained(
-    structure: &[Structure],
-    findings: &[Finding],
-    selection: &Selection,
-    problem: &Problem,
-) -> Vec<Structure> {
+fn unexplained(structure: &[Structure], findings: &[Finding], selection: &Selection) -> Vec<Structure> {
     let gusts = findings.iter().any(|f| f.effect == "gusts");
     let one = |s: &&Structure| {
         let Some(c) = NAMES.iter().position(|(name, _)| *name == s.channel) else { return false };
@@ -234,9 +239,10 @@ fn unexplained(
         }];
         let before = mean(&selection.base.residual[c].iter().map(|r| r * r).collect::<Vec<_>>());
         let explained = (before - s.rms * s.rms).max(0.0).sqrt();
-        let coloured = if gusts && (3..6).contains(&c) { 0.0 } else { s.coloured_rms };
-        let left = s.structure_rms.max(coloured);
-        let _ = problem;
+        let gusty = gusts && (3..6).contains(&c);
+        // What lines up with a signal is surer than what only has a memory.
+        let surer = if gusty { 1.0 } else { SURER };
+        let left = (s.structure_rms / surer).max(if gusty { 0.0 } else { s.coloured_rms });
         left > idle && left > LEFT_OF_NOISE * s.rms && left > LEFT_OF_EXPLAINED * explained
     };
     structure.iter().filter(one).cloned().collect()

@@ -47,4 +47,8 @@ pub trait Environment: Sync {
     fn step<L: Lane32>(&self, block: &mut Self::Block<L>, action: [L; 4], tally: &mut Self::Tally) -> Step<L>;
     /// Begins new episodes in `lanes` (bits).
     fn reset<L: Lane32>(&self, block: &mut Self::Block<L>, lanes: u16, tally: &mut Self::Tally);
+    /// The same, with the costs of how an action is chosen, not of where it leads, at `share` of their size.
+    fn with_penalties(&self, share: f64) -> Self
+    where
+        Self: Sized;
 }

@@ -12,6 +12,7 @@ pub mod spread;
 pub mod study;
 pub mod training;
 
+pub use page::digits;
 use plotters::style::RGBColor;
 
 /// Dark to bright, in order also for readers who see no hue (viridis).

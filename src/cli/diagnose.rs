@@ -10,8 +10,8 @@ use crate::flight::quality::{Quality, check};
 use crate::flight::{self, Readable};
 use crate::fsio::{self, Reserved};
 use crate::identify::{self, identify};
-use crate::report;
 use crate::report::diagnosis::Figures;
+use crate::report::{self, digits};
 use crate::run;
 use crate::vehicle::Vehicle;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -179,12 +179,7 @@ fn text(d: &Diagnosis) -> String {
     }
     if !d.drift.is_empty() {
         let rows = d.drift.iter().map(|x| {
-            vec![
-                x.parameter.clone(),
-                format!("{:.4}", x.base),
-                format!("{:.4} ({:.4} to {:.4})", x.value, x.low, x.high),
-                x.unit.into(),
-            ]
+            vec![x.parameter.clone(), format!("{:.4}", x.base), interval(x.value, x.low, x.high), x.unit.into()]
         });
         let table = columns::table(&["drift against the base", "was", "is (95 % interval)", ""], rows.collect(), 1..2);
         out.push(table);
@@ -224,11 +219,14 @@ fn text(d: &Diagnosis) -> String {
     out.join("\n\n")
 }
 
+/// A value and its interval, with as many digits as the interval's width has a meaning for.
+fn interval(value: f64, low: f64, high: f64) -> String {
+    let [value, low, high] = [value, low, high].map(|x| digits(x, high - low, 2));
+    format!("{value} ({low} to {high})")
+}
+
 fn paragraph(f: &Finding) -> String {
-    let values = f
-        .parameters
-        .iter()
-        .map(|(name, v)| format!("{name} {:.4} ({:.4} to {:.4}) {}", v.value, v.low, v.high, v.unit));
+    let values = f.parameters.iter().map(|(name, v)| format!("{name} {} {}", interval(v.value, v.low, v.high), v.unit));
     let status = match f.status {
         Status::Named => String::new(),
         Status::NamedSet => format!(" - or {}: these flights do not tell them apart", f.members[1..].join(", ")),

@@ -262,8 +262,10 @@ impl Predicted {
         let mut out: [Vec<f64>; 6] = Default::default();
         for &[from, to] in &record.windows {
             let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
-            let mut pushed = [0.0; 3];
             let axes = record.axes[from];
+            // Gravity was taken off the measured change for as long as the recorder's clock said, not for as long as it was.
+            let fast = (1.0 - stretch) * (record.time[to] - record.time[from]) * model.vehicle().gravity_m_s2;
+            let mut pushed: [f64; 3] = std::array::from_fn(|j| fast * axes[j][2]);
             for i in from * fine.every..to * fine.every {
                 let h = (fine.time[i + 1] - fine.time[i]) * stretch;
                 let mean: [f64; 6] = std::array::from_fn(|j| 0.5 * (corrected[i][j] + corrected[i + 1][j]));

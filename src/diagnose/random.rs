@@ -123,8 +123,22 @@ pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Op
     let apart = (LAGS[1] - LAGS[0]) as f64 * bin;
     let tau = apart / (near / far).max(1.02).ln();
     let sigma = (near.max(0.0) * (LAGS[0] as f64 * bin / tau).exp()).sqrt();
+    // The air is as restless early as late; drag that sets in is not.
+    let quarter = |q: usize| {
+        let part = &blocks_all[q * problem.blocks / 4..(q + 1) * problem.blocks / 4];
+        mean(&part.iter().map(|b| b[0]).collect::<Vec<_>>())
+    };
+    let quarters: Vec<f64> = (0..4).map(quarter).collect();
+    let (least, most) = quarters.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), q| (l.min(*q), m.max(*q)));
+    let lasting = least > 0.1 * most;
     let balanced = lags[0][0].min(lags[1][0]) > 0.15 * lags[0][0].max(lags[1][0]);
-    if stretches < REPLICATED || sigma < LEAST_GUST || !balanced || tau < 0.05 || structure_rms > 0.7 * sigma {
+    if stretches < REPLICATED
+        || sigma < LEAST_GUST
+        || !balanced
+        || !lasting
+        || tau < 0.05
+        || structure_rms > 0.7 * sigma
+    {
         return None;
     }
     let n = problem.blocks as f64;

@@ -151,7 +151,7 @@ fn columns(
     let mut all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
     if let Some(card) = cards.iter().find(|card| card.id == "clock_skew")
         && let Some(skew) = super::skew::estimate(problem, &point.state, &point.residual)
-        && skew.abs() > 0.3 * card.parameters[0].typical[0]
+        && skew.abs() > 0.5 * card.parameters[0].typical[0]
     {
         // Nothing else would come near.
         all.retain(|d| d.card.id != card.id);
@@ -173,7 +173,7 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
     let plain = problem.residuals(&problem.predict(&problem.model.base));
     let mut whitener = Whitener::plain(&plain, &problem.rows);
     let base_state = problem.predict(&problem.model.base);
-    let skewed = super::skew::estimate(problem, &base_state, &plain).is_some_and(|skew| skew.abs() > 5e-4);
+    let skewed = super::skew::estimate(problem, &base_state, &plain).is_some_and(|skew| skew.abs() > 5e-5);
     // Clocks that run apart leave nothing that a fit of the base could be about.
     let mut point = if skewed {
         fit::stay(problem, &whitener, &problem.model.base, &free)

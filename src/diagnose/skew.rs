@@ -50,10 +50,11 @@ pub fn estimate(problem: &Problem, state: &State, residual: &Values) -> Option<f
                 reach = (4.0 + MOST * WINDOW_S / BIN_S * 0.3).min(MOST * WINDOW_S / BIN_S);
             }
         }
-        let late: Vec<f64> =
-            points.iter().filter(|p| p.0 > 0.4 * points.last().map_or(0.0, |l| l.0)).map(|p| p.1 / p.0).collect();
-        if late.len() > 5 {
-            slopes.push(median(&late));
+        // A delay shifts all windows alike: what grows is told by windows half a flight apart.
+        let half = points.len() / 2;
+        let grown = |(a, b): (&(f64, f64), &(f64, f64))| (b.1 - a.1) / (b.0 - a.0);
+        if half > 5 {
+            slopes.push(median(&points.iter().zip(&points[half..]).map(grown).collect::<Vec<_>>()));
         }
     }
     (!slopes.is_empty()).then(|| median(&slopes))

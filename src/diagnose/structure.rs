@@ -59,15 +59,39 @@ pub const NAMES: [(&str, &str); CHANNELS] = [
     ("voltage", "V"),
 ];
 
+/// The fold of a stretch of time.
+pub fn fold(block: u32) -> u32 {
+    block / PIECE % FOLDS
+}
+
 /// The residuals of channels of rates, forces and voltage, searched for structure.
 pub fn search(problem: &Problem, state: &State, residual: &Values) -> Vec<Structure> {
     let channels: Vec<usize> = (RATE..FORCE + 3).chain([VOLTAGE]).filter(|&c| residual[c].len() > 200).collect();
-    channels.into_par_iter().map(|c| one(problem, state, c, &residual[c])).collect()
+    let mut found: Vec<Structure> = channels.into_par_iter().map(|c| one(problem, state, c, &residual[c])).collect();
+    if let Some(share) = super::place::share(problem, residual) {
+        for structure in found.iter_mut().filter(|s| s.channel == NAMES[FORCE].0 || s.channel == NAMES[FORCE + 1].0) {
+            structure.placed(share);
+        }
+    }
+    found
+}
+
+/// Where in the world it is, as a signal that structure lines up with.
+pub const PLACE: &str = "place";
+
+impl Structure {
+    /// So much of the horizontal residual's power belongs to places.
+    fn placed(&mut self, share: f64) {
+        self.structure_rms = self.structure_rms.max(share.sqrt() * self.rms);
+        if share > self.along_share {
+            (self.along, self.along_share, self.curve) = (Some(PLACE), share, Vec::new());
+        }
+    }
 }
 
 fn one(problem: &Problem, state: &State, c: usize, residual: &[f64]) -> Structure {
     let features = features(problem, state, c);
-    let fold: Vec<u32> = problem.rows[c].iter().map(|row| row.block / PIECE % FOLDS).collect();
+    let fold: Vec<u32> = problem.rows[c].iter().map(|row| fold(row.block)).collect();
     let cap = 5.0 * crate::stats::robust_sd(residual).max(1e-12);
     let y: Vec<f64> = residual.iter().map(|r| r.clamp(-cap, cap)).collect();
     let power = crate::stats::mean(&y.iter().map(|y| y * y).collect::<Vec<_>>());
@@ -203,6 +227,9 @@ pub fn signals(problem: &Problem, state: &State, c: usize) -> Vec<(&'static str,
     let heading = |f: usize, i: usize| records[f].axes[i][0][1].atan2(records[f].axes[i][0][0]);
     let begins = problem.clocks();
     let clock = |f: usize, i: usize| begins[f] + records[f].time[i] - records[f].time[0];
+    let middle = 0.5 * rows.last().map_or(0.0, |row| clock(row.flight as usize, row.sample as usize));
+    // What a number that changed in flight leaves.
+    let moved = |k: usize| move |f: usize, i: usize| v(k)(f, i) * (clock(f, i) / middle.max(1.0) - 1.0);
     vec![
         ("throttle", "share", at(&s)),
         ("change of throttle", "share", at(&before)),
@@ -215,6 +242,8 @@ pub fn signals(problem: &Problem, state: &State, c: usize) -> Vec<(&'static str,
         ("speed across times vertical speed", "m2/s2", at(&|f, i| over_ground(f, i) * v(2)(f, i))),
         ("height", "m", at(&|f, i| records[f].height[i].min(50.0))),
         ("time", "s", at(&clock)),
+        ("forward speed times time", "m/s", at(&moved(0))),
+        ("sideways speed times time", "m/s", at(&moved(1))),
         ("heading", "rad", at(&heading)),
         ("roll rate", "rad/s", at(&w(0))),
         ("pitch rate", "rad/s", at(&w(1))),

@@ -10,7 +10,7 @@ impl Effect for It {
         name: "clock skew",
         sentence: "one recorder's clock drifts away from the other's over the flight",
         kind: Kind::Sensor,
-        parameters: &[Parameter { name: "skew", unit: "1", low: -0.03, high: 0.03, typical: [0.001, 0.016] }],
+        parameters: &[Parameter { name: "skew", unit: "1", low: -0.03, high: 0.03, typical: [1e-4, 0.016] }],
         channels: &[Channel::Rate, Channel::Turn],
         signature: "the shift between gyro and attitude grows over the log",
         rivals: &["stream_offset", "gyro_scale", "response_voltage"],

@@ -75,6 +75,12 @@ impl Environment for Race {
             self.restart(block, lane);
         }
     }
+
+    fn with_penalties(&self, share: f64) -> Self {
+        let mut race = self.clone();
+        race.config.reward.action_change *= share;
+        race
+    }
 }
 
 impl Race {

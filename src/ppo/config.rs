@@ -74,11 +74,22 @@ pub struct PpoConfig {
     pub adam_epsilon: f64,
     /// lambda_a of Eq. 12: cost of the squared mean action, in the actor's loss. Higher flies with smaller commands.
     pub action_magnitude: f64,
+    /// Share of `action_magnitude` and of the reward's `action_change` to begin with; below 1 the policy learns to fly before it learns to
+    /// fly smoothly. They grow by the same factor from step to step.
+    pub penalty_begin: f64,
+    /// Share of the budget after which they are whole.
+    pub penalty_full: f64,
     /// Logarithm of the action noise at the start, before the tanh.
     pub log_std_initial: f64,
 }
 
 impl PpoConfig {
+    /// Share of the penalties at `share` of the budget.
+    pub fn penalty(&self, share: f64) -> f64 {
+        let done = if self.penalty_full > 0.0 { (share / self.penalty_full).clamp(0.0, 1.0) } else { 1.0 };
+        self.penalty_begin.powf(1.0 - done)
+    }
+
     /// Environment steps of one rollout.
     pub fn samples(&self) -> usize {
         self.environments * self.rollout
@@ -135,7 +146,9 @@ impl Check for PpoConfig {
         ] {
             Invalid::unless_not_negative(key, value, "")?;
         }
-        for (key, value) in [("gamma", self.gamma), ("lambda", self.lambda)] {
+        let begins = self.penalty_begin > 0.0 && self.penalty_begin <= 1.0;
+        Invalid::unless(begins, "penalty_begin", self.penalty_begin, "above 0, at most 1", "1 is no growth")?;
+        for (key, value) in [("gamma", self.gamma), ("lambda", self.lambda), ("penalty_full", self.penalty_full)] {
             Invalid::unless((0.0..=1.0).contains(&value), key, value, "0 to 1", "")?;
         }
         let wide = (-5.0..=2.0).contains(&self.log_std_initial);

@@ -113,9 +113,9 @@ impl<'a, E: Environment> Training<'a, E> {
     }
 
     /// Collects one rollout.
-    pub fn collect(&mut self) {
+    pub fn collect(&mut self, environment: &E) {
         let first_step = (self.iterations * self.config.rollout) as u32;
-        collect(self.level, self.environment, &self.network, &self.rng, &mut self.tiles, &mut self.rollout, first_step);
+        collect(self.level, environment, &self.network, &self.rng, &mut self.tiles, &mut self.rollout, first_step);
     }
 
     /// Generalised advantages of the rollout, normalised over the batch; returns the explained variance.
@@ -144,15 +144,16 @@ impl<'a, E: Environment> Training<'a, E> {
 
     /// Rollout, advantages and all epochs of one iteration at `share` of the budget.
     pub fn iterate(&mut self, share: f64) -> (Losses, f64, f64) {
-        self.collect();
-        let explained = self.advantages();
         let c = self.config;
+        let penalty = c.penalty(share);
+        self.collect(&self.environment.with_penalties(penalty));
+        let explained = self.advantages();
         let learning_rate = c.learning_rate + (c.learning_rate_final - c.learning_rate) * share.clamp(0.0, 1.0);
         let hyper = Hyper {
             weights: Weights {
                 clip: c.clip,
                 entropy: c.entropy,
-                magnitude: c.action_magnitude,
+                magnitude: c.action_magnitude * penalty,
                 value: c.value_coefficient,
             },
             learning_rate,

@@ -12,8 +12,9 @@ const BEYOND: f64 = 5.0;
 const BEYOND_SHARE: f64 = 0.6;
 /// Kept away on either side, s.
 const MARGIN_S: f64 = 0.3;
-/// Where it is more of the log than this, the commands are wrong, not the flight.
+/// Where it is more of the log than this, or happens more often, the commands or their clock are wrong, not the flight.
 const MOST: f64 = 0.2;
+const OFTEN: usize = 20;
 
 /// Times at which a body rate is far outside the range of its recent commands.
 pub fn find(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
@@ -29,7 +30,10 @@ pub fn find(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
         }
     }
     let holes = around(times, |i| loose[i], MARGIN_S);
-    if length(&holes) > MOST * (times[times.len() - 1] - times[0]) {
+    if length(&holes) > MOST * (times[times.len() - 1] - times[0]) || holes.len() > OFTEN {
+        let what = format!("it turns {} times as no command of the {MEMORY_S} s before asked", holes.len());
+        let did = "nothing is left out; their clocks may run apart, or the mapping may be wrong";
+        findings.push(Finding::new(Severity::Note, "tumbling", "setpoint", what, did));
         return Vec::new();
     }
     for hole in &holes {
