@@ -8,6 +8,7 @@ mod map;
 mod page;
 mod plot;
 pub mod replay;
+pub mod run;
 pub mod spread;
 pub mod study;
 pub mod training;

@@ -81,7 +81,7 @@ fn figures_of_flights_are_drawn() {
     assert!(figure.contains("20 randomised vehicles") && figure.contains("fixed starts"));
     let trace = fly(Level::best(), &race.scored(&track), &network, Place::Pad, 1, 100).trace;
     let [left, right] = ["weak", "strong"].map(|title| Commands { title, trace: &trace });
-    let figure = report::commands::svg(left, right).unwrap();
+    let figure = report::commands::svg(&[left, right]).unwrap();
     assert!(["weak", "strong", "roll rate", "thrust", "time, s"].iter().all(|text| figure.contains(text)));
 }
 

@@ -69,6 +69,16 @@ fn a_policy_is_replayed_and_its_sensitivity_told() {
     assert_eq!(racer(folder.path(), &["replay", "run", "--out", "run"]).code, 2);
     assert_eq!(racer(folder.path(), &["replay", "run", "--mapping", "px4"]).code, 2);
 
+    let ran = racer(folder.path(), &["report", "run", "--beside", "run"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let page = std::fs::read_to_string(folder.path().join(ran.out.trim())).unwrap();
+    assert!(page.contains("run, random start") && page.matches("<svg").count() == 4, "{page}");
+    for (figure, part) in [("training", "seed 1"), ("lap", "no lap"), ("commands", "thrust"), ("spread", "randomised")] {
+        let svg = std::fs::read_to_string(folder.path().join(format!("run/report/{figure}.svg"))).unwrap();
+        assert!(svg.contains(part), "{figure}");
+    }
+    assert_eq!(racer(folder.path(), &["report", "run", "--beside", "nowhere"]).code, 2);
+
     let ran = racer(folder.path(), &["fly", "run", "--seconds", "1", "--out", "log.mcap"]);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let ran = racer(folder.path(), &["replay", "log.mcap", "--track", "square"]);

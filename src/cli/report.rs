@@ -1,21 +1,26 @@
 //! `racer report`: a folder as a page and figures.
 
+mod run;
 mod study;
 
 use super::{Outcome, tell};
 use crate::check::BadInput;
 use crate::fsio::{new_folder, write_new};
-use crate::run;
+use crate::run::free;
+use crate::run::metrics::METRICS;
 use crate::study::folder::PLAN;
 use std::path::{Path, PathBuf};
 
-/// Draw the figures of a study, and one page with all of them
+/// Draw the figures of a run or of a study, and one page with all of them
 #[derive(Debug, clap::Args)]
 #[command(after_help = HELP)]
 pub struct Args {
-    /// The folder of a study
-    #[arg(value_name = "STUDY")]
+    /// The folder of a run or of a study
+    #[arg(value_name = "RUN|STUDY")]
     folder: PathBuf,
+    /// Of a run: another one, whose commands are drawn beside
+    #[arg(long, value_name = "RUN")]
+    beside: Option<PathBuf>,
     /// New folder for page and figures [default: report/ in the folder, numbered where there is one]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -23,10 +28,12 @@ pub struct Args {
 
 const HELP: &str =
     "The page, report.html, needs nothing beside it; the figures in it are there as SVG files, too. A study under \
-way is drawn as far as it is.
+way is drawn as far as it is. The policy of a run is flown again: its lap from above, its commands, and how far randomised \
+vehicles fly from the nominal one.
 
-Example:
-  racer report runs/cpu_configurations";
+Examples:
+  racer report runs/cpu_configurations
+  racer report runs/weak --beside runs/strong";
 
 /// The page's name.
 const PAGE: &str = "report.html";
@@ -40,9 +47,14 @@ pub struct Drawn {
 /// Draws what the folder holds and writes it.
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let drawn = match kind(&args.folder)? {
+        Kind::Study if args.beside.is_some() => {
+            let expected = "the folder of a run, whose commands another one's can stand beside";
+            return Err(BadInput::new("--beside", "the folder of a study", expected, "name one of its runs").into());
+        }
         Kind::Study => study::draw(&args.folder)?,
+        Kind::Run => run::draw(&args.folder, args.beside.as_deref())?,
     };
-    let out = args.out.clone().unwrap_or_else(|| run::free(&args.folder.join("report")));
+    let out = args.out.clone().unwrap_or_else(|| free(&args.folder.join("report")));
     new_folder(&out)?;
     let write = |name: &str, text: &str| {
         let path = out.join(name);
@@ -59,21 +71,19 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
 
 /// What a folder can hold.
 enum Kind {
+    Run,
     Study,
 }
 
 fn kind(folder: &Path) -> Result<Kind, BadInput> {
     let has = |name: &str| folder.join(name).is_file();
-    const EXPECTED: &str = "the folder of a study, which has a plan.json";
+    const EXPECTED: &str = "the folder of a run or of a study";
     if has(PLAN) {
         return Ok(Kind::Study);
     }
-    Err(match folder.is_dir() {
-        true if has("config.toml") => {
-            let advice = "its figures, lap.svg and training.svg, are in it already";
-            BadInput::new(folder.display(), "the folder of a run", EXPECTED, advice)
-        }
-        true => BadInput::new(folder.display(), "another folder", EXPECTED, "`racer study` makes one"),
-        false => BadInput::new(folder.display(), "nothing of that name", EXPECTED, "`racer study` makes one"),
-    })
+    if has(METRICS) {
+        return Ok(Kind::Run);
+    }
+    let found = if folder.is_dir() { "another folder" } else { "nothing of that name" };
+    Err(BadInput::new(folder.display(), found, EXPECTED, "`racer train` and `racer study` make one"))
 }

@@ -14,7 +14,7 @@ use crate::lane::Level;
 use crate::ppo::train::{Flow, Iteration, Observer, Trained, train};
 use crate::run::evaluated::{EVALUATED, Evaluated};
 use crate::run::figures::{self, LAP, TRAINING};
-use crate::run::metrics::{Row, to_csv};
+use crate::run::metrics::{METRICS, Row, to_csv};
 use crate::run::provenance::Provenance;
 use crate::run::{POLICY, Run, SNAPSHOTS, TENSORBOARD, resolved, tensorboard};
 use crate::snapshot::{About, Snapshot};
@@ -190,7 +190,7 @@ fn save(
         run.write(&name, policy.to_bytes()?)?;
         policies.push((name, policy));
     }
-    run.write("metrics.csv", to_csv(rows)?)?;
+    run.write(METRICS, to_csv(rows)?)?;
     run.write(&format!("{TENSORBOARD}/{}", tensorboard::file_name(started)), tensorboard::events(started, rows))?;
     Ok(policies)
 }
@@ -217,6 +217,7 @@ fn evaluate(
     rows: &[Row],
 ) -> anyhow::Result<Outcome> {
     tell(&format!("evaluating {} snapshots", policies.len()));
+    let share = |policy: &Snapshot| setup.config.budget.share(policy.about.steps, policy.about.seconds);
     let (mut reports, mut traces) = (Vec::new(), Vec::new());
     for (_, policy) in policies {
         if interrupt::asked() {
@@ -233,14 +234,19 @@ fn evaluate(
     });
     let entries: Vec<_> = entries.collect();
     run.write(EVALUATED, serde_json::to_string_pretty(&entries)? + "\n")?;
-    let Some(chosen) = best(&reports) else { anyhow::bail!("the training took no snapshot") };
+    // While the penalties still grow, a policy is not yet what was asked for.
+    let whole = |policy: &Snapshot| setup.config.ppo.penalty(share(policy)) >= 1.0;
+    let first = policies.iter().position(|(_, policy)| whole(policy)).unwrap_or(policies.len().saturating_sub(1));
+    let Some(chosen) = best(&reports[first..]).map(|place| first + place) else {
+        anyhow::bail!("the training took no snapshot")
+    };
     run.write(POLICY, policies[chosen].1.to_bytes()?)?;
     run.write("evaluation.json", serde_json::to_string_pretty(&entries[chosen])? + "\n")?;
 
     figures::write_lap(run, &setup.track, &traces[chosen], &reports[chosen])?;
-    let seconds: Vec<f64> = policies.iter().map(|(_, policy)| policy.about.seconds).collect();
     let title = format!("{}, seed {}", setup.track.name, setup.config.seed);
-    figures::write_training(run, &title, rows, &seconds, &reports, chosen)?;
+    let curve: Vec<_> = rows.iter().map(|row| [row.get("time/seconds"), row.get("episode/gates")]).collect();
+    run.write(TRAINING, figures::training(&title, &curve, &entries, &entries[chosen].snapshot)?)?;
 
     let folder = run.folder.display();
     let (million, seconds) = (trained.steps as f64 / 1e6, trained.seconds);

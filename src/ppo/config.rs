@@ -155,3 +155,19 @@ impl Check for PpoConfig {
         Invalid::unless(wide, "log_std_initial", self.log_std_initial, "-5 to 2", "-0.5 is a good start")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::config::Config;
+
+    #[test]
+    fn penalties_grow_by_the_same_factor_and_are_then_whole() {
+        let mut ppo = Config::load("a2rl", &[]).unwrap().ppo;
+        assert_eq!([0.0, 0.3, 1.0].map(|share| ppo.penalty(share)), [1.0; 3]);
+        (ppo.penalty_begin, ppo.penalty_full) = (0.01, 0.5);
+        let [begin, quarter, half, late] = [0.0, 0.25, 0.5, 0.9].map(|share| ppo.penalty(share));
+        assert!((begin - 0.01).abs() < 1e-12 && (quarter - 0.1).abs() < 1e-12 && half == 1.0 && late == 1.0);
+        ppo.penalty_full = 0.0;
+        assert_eq!(ppo.penalty(0.0), 1.0);
+    }
+}

@@ -17,13 +17,13 @@ const HEIGHT: u32 = 760;
 const TITLES: u32 = 30;
 const SECONDS: f64 = JUDGED_STEPS as f64 * crate::env::DT;
 
-/// An SVG: roll, pitch and yaw rate and thrust, each from -1 to 1, of the `left` flight (weak regularisation, in the paper) and the
-/// `right` one; the limits of saturation are marked.
-pub fn svg(left: Commands, right: Commands) -> anyhow::Result<String> {
+/// An SVG: roll, pitch and yaw rate and thrust, each from -1 to 1, of the `flights` (in the paper one with weak and one with strong
+/// regularisation); the limits of saturation are marked.
+pub fn svg(flights: &[Commands]) -> anyhow::Result<String> {
     const NAMES: [&str; 4] = ["roll rate", "pitch rate", "yaw rate", "thrust"];
     plot::svg(HEIGHT, |root| {
-        let columns = root.split_evenly((1, 2));
-        for (area, Commands { title, trace }) in columns.iter().zip([left, right]) {
+        let columns = root.split_evenly((1, flights.len()));
+        for (area, Commands { title, trace }) in columns.iter().zip(flights) {
             let (head, rest) = area.split_vertically(TITLES);
             let font = ("sans-serif", 18).into_font().color(&BLACK);
             head.draw(&Text::new(title.to_string(), (64, 8), font)).map_err(drawing)?;

@@ -1,7 +1,7 @@
 //! The figures and the traced flight of a run folder.
 
 use super::Run;
-use super::metrics::Row;
+use super::evaluated::Evaluated;
 use crate::eval::Report;
 use crate::eval::fly::Moment;
 use crate::report::{lap, training};
@@ -18,46 +18,37 @@ pub fn write_lap(run: &Run, track: &Track, trace: &[Moment], report: &Report) ->
     let mut csv = csv::Writer::from_writer(Vec::new());
     trace.iter().try_for_each(|moment| csv.serialize(moment))?;
     run.write(TRACE, csv.into_inner()?)?;
-    let fixed = report.fixed.as_ref();
-    let laps = fixed.and_then(|f| Some((f.lap_time_s?.median, f.lap_completion)));
-    let title = match laps {
+    run.write(LAP, lap::svg(track, trace, &lap_title(track, report))?)?;
+    Ok(())
+}
+
+/// What a lap is the lap of.
+pub fn lap_title(track: &Track, report: &Report) -> String {
+    let laps = report.fixed.as_ref().and_then(|f| Some((f.lap_time_s?.median, f.lap_completion)));
+    match laps {
         Some((median, share)) => {
             format!("{}: median lap {median:.2} s, completed by {:.1} % of agents", track.name, 100.0 * share)
         }
         None => format!("{}: no lap completed", track.name),
-    };
-    run.write(LAP, lap::svg(track, trace, &title)?)?;
-    Ok(())
+    }
 }
 
-/// Writes `training.svg`: `reports` of the snapshots taken at `seconds`, of which `chosen` was kept.
-pub fn write_training(
-    run: &Run,
+/// The learning curves: of each row minutes and gates an episode, of each snapshot its evaluation; `chosen` was kept.
+pub fn training(
     title: &str,
-    rows: &[Row],
-    seconds: &[f64],
-    reports: &[Report],
-    chosen: usize,
-) -> anyhow::Result<()> {
+    rows: &[[Option<f64>; 2]],
+    snapshots: &[Evaluated],
+    chosen: &str,
+) -> anyhow::Result<String> {
     let minutes = |seconds: f64| seconds / 60.0;
-    let curve: Vec<_> = rows
-        .iter()
-        .map(|row| training::Point {
-            minutes: minutes(row.get("time/seconds").unwrap_or_default()),
-            gates: row.get("episode/gates"),
-        })
-        .collect();
-    let snapshots: Vec<_> = reports
-        .iter()
-        .zip(seconds)
-        .enumerate()
-        .map(|(i, (report, &seconds))| training::Evaluated {
-            minutes: minutes(seconds),
-            fixed: report.completion(),
-            random: report.random.as_ref().map_or(0.0, |random| random.lap_completion),
-            chosen: i == chosen,
-        })
-        .collect();
-    run.write(TRAINING, training::svg(&curve, &snapshots, title)?)?;
-    Ok(())
+    let point =
+        |row: &[Option<f64>; 2]| training::Point { minutes: minutes(row[0].unwrap_or_default()), gates: row[1] };
+    let curve: Vec<_> = rows.iter().map(point).collect();
+    let evaluated = |e: &Evaluated| training::Evaluated {
+        minutes: minutes(e.seconds),
+        fixed: e.report.completion(),
+        random: e.report.random.as_ref().map_or(0.0, |random| random.lap_completion),
+        chosen: e.snapshot == chosen,
+    };
+    training::svg(&curve, &snapshots.iter().map(evaluated).collect::<Vec<_>>(), title)
 }

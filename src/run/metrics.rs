@@ -9,6 +9,9 @@ use crate::stats;
 use std::path::Path;
 use std::time::SystemTime;
 
+/// Name of the file, in a run folder.
+pub const METRICS: &str = "metrics.csv";
+
 /// One iteration's numbers.
 #[derive(Clone, Debug)]
 pub struct Row {

@@ -68,7 +68,7 @@ pub fn read(folder: &Folder, results: &Results) -> anyhow::Result<Curves> {
     for (run, (planned, result)) in results.plan.runs.iter().zip(&results.runs).enumerate() {
         let Some(result) = result else { continue };
         let path = folder.run(&planned.name);
-        let rows = metrics::read(&path.join("metrics.csv"), ["steps", "time/seconds", column])?;
+        let rows = metrics::read(&path.join(metrics::METRICS), ["steps", "time/seconds", column])?;
         let learning = smoothed(&rows);
         let on = |seconds: f64, steps: u64| {
             let at = at(seconds, steps as f64, 0.0);
