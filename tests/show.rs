@@ -73,7 +73,8 @@ fn a_policy_is_replayed_and_its_sensitivity_told() {
     assert_eq!(ran.code, 0, "{}", ran.err);
     let page = std::fs::read_to_string(folder.path().join(ran.out.trim())).unwrap();
     assert!(page.contains("run, random start") && page.matches("<svg").count() == 4, "{page}");
-    for (figure, part) in [("training", "seed 1"), ("lap", "no lap"), ("commands", "thrust"), ("spread", "randomised")] {
+    for (figure, part) in [("training", "seed 1"), ("lap", "no lap"), ("commands", "thrust"), ("spread", "randomised")]
+    {
         let svg = std::fs::read_to_string(folder.path().join(format!("run/report/{figure}.svg"))).unwrap();
         assert!(svg.contains(part), "{figure}");
     }

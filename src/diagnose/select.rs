@@ -328,7 +328,7 @@ fn rank(
 /// The time constants that a delay is mistaken for.
 fn delayed(card: &Card) -> std::ops::Range<usize> {
     match card.id {
-        "rate_delay" => TAU.start..TAU.start + 3,
+        "rate_delay" | "stream_offset" => TAU.start..TAU.start + 3,
         "thrust_delay" => TAU.start + 3..TAU.end,
         _ => 0..0,
     }
