@@ -4,9 +4,13 @@
 //! An effect is hidden in an independent simulator, a flight there is logged and given to the shipped program beside the vehicle
 //! without the effect, policies are trained with the same budget in that vehicle and in the extended one, and both race in the
 //! independent simulator. The control is the first policy's race there without the effect.
+//!
+//! `cargo bench --bench retraining -- --policy RUN --svg lap.svg` races a policy that is there in both simulators, and draws the laps.
 
 #[path = "retraining/args.rs"]
 mod args;
+#[path = "retraining/beside.rs"]
+mod beside;
 #[path = "retraining/program.rs"]
 mod program;
 #[path = "retraining/race.rs"]
@@ -33,6 +37,9 @@ use truth::hidden::{self, Setting, Style, World};
 
 fn main() {
     let args = Args::parse();
+    if let Some(policy) = &args.policy {
+        return beside::show(&args, policy);
+    }
     println!("{}", args.summary());
     let vehicle = args.draw.map_or_else(Vehicle::seed_class, Vehicle::draw);
     let folder = Folder::new(&args);
@@ -51,7 +58,7 @@ fn main() {
         let simulated = folder.evaluate(&format!("base-{seed}"), "base.toml", "none");
         let row = Row { effect: "none".into(), size: 0.0, seed: *seed, trained: "base", flights, simulated };
         show(row, &mut rows);
-        let [there, here] = [rows[rows.len() - 1].flights[0].lap_s, race::in_racer(policy)];
+        let [there, here] = [rows[rows.len() - 1].flights[0].lap_s, race::in_racer(policy).lap_s];
         println!(
             "  the nominal agent's lap: {} s, in racer's own simulator {} s",
             table::time(there),

@@ -5,7 +5,7 @@ use clap::Parser;
 use std::path::PathBuf;
 
 /// Races policies in an independent simulator: trained without an effect, and with what `racer diagnose` made of it
-#[derive(Debug, Parser)]
+#[derive(Clone, Debug, Parser)]
 #[command(name = "retraining")]
 pub struct Args {
     /// Identifiers of effects, each with its size or at one at which racing feels it: `rate_delay=0.02`; `all`; `none`
@@ -41,6 +41,12 @@ pub struct Args {
     /// Keep logs, vehicles, answers and runs in this folder, which is new or empty
     #[arg(long, value_name = "DIR")]
     pub keep: Option<PathBuf>,
+    /// Train nothing: race this policy of the seed class in both simulators, without an effect
+    #[arg(long, value_name = "RUN", requires = "svg")]
+    pub policy: Option<String>,
+    /// New file for the picture of the two laps
+    #[arg(long, value_name = "FILE", requires = "policy")]
+    pub svg: Option<PathBuf>,
     /// The program [default: the one built with this]
     #[arg(long, value_name = "PATH", default_value = env!("CARGO_BIN_EXE_racer"))]
     pub racer: PathBuf,

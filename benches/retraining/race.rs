@@ -38,6 +38,8 @@ pub struct Raced {
     pub lap_s: Option<f64>,
     /// Why there is none.
     pub failure: Option<&'static str>,
+    /// Position, m, and velocity, m/s, at each step.
+    pub path: Vec<[f64; 6]>,
 }
 
 /// Races of `policy` in `world`; the first is nominal.
@@ -50,12 +52,14 @@ pub fn race(policy: &Snapshot, world: &World, args: &Args) -> Vec<Raced> {
     agents.chunks(TILE_SAMPLES).flat_map(|tile| race_tile(policy, &race, world, tile)).collect()
 }
 
-/// The lap of the nominal agent in racer's own simulator, s.
-pub fn in_racer(policy: &Snapshot) -> Option<f64> {
+/// The nominal agent's race in racer's own simulator.
+pub fn in_racer(policy: &Snapshot) -> Raced {
     let about = &policy.about;
     let race = Race::new(&about.env, &about.track, &about.vehicle, about.seed).scored(&about.track);
     let steps = (LONGEST_S / CONTROL_S) as u32;
-    fly(Level::best(), &race, &policy.network, Place::Pad, 1, steps).flights[0].lap_time(race.gates.len())
+    let flights = fly(Level::best(), &race, &policy.network, Place::Pad, 1, steps);
+    let path = flights.trace.iter().map(|m| [m.x, m.y, m.z, m.vx, m.vy, m.vz].map(f64::from)).collect();
+    Raced { lap_s: flights.flights[0].lap_time(race.gates.len()), failure: None, path }
 }
 
 fn race_tile(policy: &Snapshot, race: &Race, world: &World, numbers: &[u32]) -> Vec<Raced> {
@@ -87,6 +91,7 @@ struct Agent<'a> {
     steps: usize,
     /// When each gate was passed, in steps.
     passes: Vec<f64>,
+    path: Vec<[f64; 6]>,
     ended: Option<Raced>,
 }
 
@@ -111,6 +116,7 @@ impl<'a> Agent<'a> {
             target: 0,
             steps: 0,
             passes: Vec::new(),
+            path: Vec::new(),
             ended: None,
         }
     }
@@ -164,9 +170,11 @@ impl<'a> Agent<'a> {
             self.target = (self.target + 1) % race.gates.len();
         }
         self.steps += 1;
+        let velocity = self.flight.craft.velocity;
+        self.path.push([position.x, position.y, position.z, velocity.x, velocity.y, velocity.z]);
         let lap_s = self.passes.get(race.gates.len()).map(|end| (end - self.passes[0]) * CONTROL_S);
         if failure.is_some() || lap_s.is_some() {
-            self.ended = Some(Raced { lap_s, failure });
+            self.ended = Some(Raced { lap_s, failure, path: std::mem::take(&mut self.path) });
         }
     }
 }
