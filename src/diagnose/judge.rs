@@ -117,7 +117,9 @@ impl<'a> Judge<'a> {
         let own = self.places(card);
         let n = self.point().free.len();
         let rest: Vec<usize> = (0..n).filter(|i| !own.contains(i)).collect();
-        let mut x = self.point().x.clone();
+        let mut plain = self.point().x.clone();
+        span(card).for_each(|k| plain[k] = 0.0);
+        let mut taken_over = plain.clone();
         let prior: Vec<f64> =
             rest.iter().map(|&i| self.problem.model.numbers[self.point().free[i]].trust.powi(-2)).collect();
         if let Some(inner) = inverse(&Grams::pick(&self.grams.sum, &rest, &rest), &prior).filter(|_| !own.is_empty()) {
@@ -127,11 +129,21 @@ impl<'a> Judge<'a> {
                 let number = &self.problem.model.numbers[k];
                 let taken: f64 =
                     own.iter().enumerate().map(|(b, &j)| absorbed[(a, b)] * self.point().x[self.point().free[j]]).sum();
-                x[k] = (x[k] + taken).clamp(number.low, number.high);
+                taken_over[k] = (taken_over[k] + taken).clamp(number.low, number.high);
             }
         }
-        span(card).for_each(|k| x[k] = 0.0);
-        let state = self.problem.predict(&x);
+        // A large effect is not linear: where what the others take over by its slope makes it worse, they are left as they are.
+        let judged = |x: Vec<f64>| {
+            let state = self.problem.predict(&x);
+            let residual = self.problem.residuals(&state);
+            let off = |c: usize| {
+                let sd = self.selection.whitener.sd(c).max(1e-12);
+                residual[c].iter().map(|r| (r / sd).powi(2)).sum::<f64>()
+            };
+            ((0..CHANNELS).map(off).sum::<f64>(), x, state)
+        };
+        let (_, x, state) =
+            [plain, taken_over].map(judged).into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).expect("two");
         let (with, without) = (self.problem.pick(&self.point().state), self.problem.pick(&state));
         let change = std::array::from_fn(|c| with[c].iter().zip(&without[c]).map(|(a, b)| a - b).collect());
         (x, change)
