@@ -58,7 +58,8 @@ pub fn in_racer(policy: &Snapshot) -> Raced {
     let race = Race::new(&about.env, &about.track, &about.vehicle, about.seed).scored(&about.track);
     let steps = (LONGEST_S / CONTROL_S) as u32;
     let flights = fly(Level::best(), &race, &policy.network, Place::Pad, 1, steps);
-    let path = flights.trace.iter().map(|m| [m.x, m.y, m.z, m.vx, m.vy, m.vz].map(f64::from)).collect();
+    // The first moment is the start itself.
+    let path = flights.trace.iter().skip(1).map(|m| [m.x, m.y, m.z, m.vx, m.vy, m.vz].map(f64::from)).collect();
     Raced { lap_s: flights.flights[0].lap_time(race.gates.len()), failure: None, path }
 }
 

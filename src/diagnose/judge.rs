@@ -185,7 +185,13 @@ impl<'a> Judge<'a> {
         } else {
             Status::NamedSet
         };
-        let why = (!evident).then(|| format!("only {stretches:.0} stretches of flight agree"));
+        let why = (!evident).then(|| {
+            if stretches < REPLICATED {
+                format!("only {stretches:.0} stretches of flight agree")
+            } else {
+                "its size is not sure enough".into()
+            }
+        });
         let (manoeuvre, kinds) = card.manoeuvre;
         let finding = Finding {
             effect: card.id,
