@@ -8,11 +8,10 @@ use crate::config::{DEFAULT, Setting, Setup};
 use crate::env::Race;
 use crate::env::reset::Place;
 use crate::env::tally::Tally;
-use crate::eval::choose::best;
 use crate::eval::{Report, benchmark};
 use crate::lane::Level;
 use crate::ppo::train::{Flow, Iteration, Observer, Trained, train};
-use crate::run::evaluated::{EVALUATED, Evaluated};
+use crate::run::evaluated::{self, EVALUATED, Evaluated};
 use crate::run::figures::{self, LAP, TRAINING};
 use crate::run::metrics::{METRICS, Row, to_csv};
 use crate::run::provenance::Provenance;
@@ -217,7 +216,6 @@ fn evaluate(
     rows: &[Row],
 ) -> anyhow::Result<Outcome> {
     tell(&format!("evaluating {} snapshots", policies.len()));
-    let share = |policy: &Snapshot| setup.config.budget.share(policy.about.steps, policy.about.seconds);
     let (mut reports, mut traces) = (Vec::new(), Vec::new());
     for (_, policy) in policies {
         if interrupt::asked() {
@@ -230,16 +228,13 @@ fn evaluate(
     }
     let entries = policies.iter().zip(&reports).map(|((name, policy), report)| {
         let &About { steps, seconds, .. } = &policy.about;
-        Evaluated { snapshot: name.clone(), steps, seconds, report: report.clone() }
+        let penalty = setup.config.ppo.penalty(setup.config.budget.share(steps, seconds));
+        Evaluated { snapshot: name.clone(), steps, seconds, penalty, report: report.clone() }
     });
     let entries: Vec<_> = entries.collect();
     run.write(EVALUATED, serde_json::to_string_pretty(&entries)? + "\n")?;
-    // While the penalties still grow, a policy is not yet what was asked for.
-    let whole = |policy: &Snapshot| setup.config.ppo.penalty(share(policy)) >= 1.0;
-    let first = policies.iter().position(|(_, policy)| whole(policy)).unwrap_or(policies.len().saturating_sub(1));
-    let Some(chosen) = best(&reports[first..]).map(|place| first + place) else {
-        anyhow::bail!("the training took no snapshot")
-    };
+    let Some(best) = evaluated::best(&entries) else { anyhow::bail!("the training took no snapshot") };
+    let chosen = entries.iter().position(|e| e.snapshot == best.snapshot).expect("one of them");
     run.write(POLICY, policies[chosen].1.to_bytes()?)?;
     run.write("evaluation.json", serde_json::to_string_pretty(&entries[chosen])? + "\n")?;
 

@@ -1,7 +1,7 @@
 //! What a finished run reached: `result.json` in its folder.
 
 use crate::check::BadInput;
-use crate::eval::choose::{DEPLOYABLE, best};
+use crate::eval::choose::DEPLOYABLE;
 use crate::eval::score::Benchmark;
 use crate::run::evaluated::{self, Evaluated};
 use serde::{Deserialize, Serialize};
@@ -65,8 +65,8 @@ pub fn of(folder: &Path, about: &About, section_share: f64) -> Result<RunResult,
 
 fn summarised(evaluated: &[Evaluated], about: &About, section_share: f64) -> Option<RunResult> {
     let moment = |e: &Evaluated| Moment { steps: e.steps, seconds: e.seconds };
-    let reports: Vec<_> = evaluated.iter().map(|e| e.report.clone()).collect();
-    let best = &evaluated[best(&reports)?];
+    let best = evaluated::best(evaluated)?;
+    let ready = evaluated::counting(evaluated).iter().find(|e| e.report.completion() >= DEPLOYABLE);
     let (fixed, random) = (best.report.fixed.clone()?, best.report.random.clone()?);
     let passes = |e: &&Evaluated, section: &str| {
         let share = e.report.random.as_ref().and_then(|random| random.sections.get(section));
@@ -84,7 +84,7 @@ fn summarised(evaluated: &[Evaluated], about: &About, section_share: f64) -> Opt
         snapshots: evaluated.len(),
         trained: moment(evaluated.last()?),
         best: moment(best),
-        ready: evaluated.iter().find(|e| e.report.completion() >= DEPLOYABLE).map(moment),
+        ready: ready.map(moment),
         sections: random.sections.keys().map(first).collect(),
         fixed,
         random,
@@ -121,5 +121,12 @@ mod tests {
         let none = summarised(&run[..1], &about, 0.1).unwrap();
         assert!(none.ready.is_none() && none.sections[0].first.is_none());
         assert!(summarised(&[], &about, 0.1).is_none());
+        // Of those that were trained under whole penalties.
+        let mut growing = run;
+        growing[1].penalty = 0.5;
+        growing[2].penalty = 0.9;
+        growing[0].penalty = 0.2;
+        let result = summarised(&growing, &about, 0.1).unwrap();
+        assert!(result.ready.is_none() && result.best.steps == 40);
     }
 }
