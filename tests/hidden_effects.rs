@@ -91,3 +91,18 @@ fn what_is_not_in_the_catalogue_is_not_given_a_name() {
     assert!(channels.contains(&"specific force x"), "{channels:?}");
     assert!(named(&diagnosis).iter().all(|f| f.channel != "specific force x"), "{:?}", named(&diagnosis));
 }
+
+#[test]
+fn a_clock_that_runs_fast_is_found_and_makes_no_bias() {
+    finds(47, &[("clock_skew", 0.006)], 0.01);
+}
+
+#[test]
+fn a_fan_is_no_wind_and_no_gusts() {
+    let vehicle = Vehicle::draw(48);
+    let mut rng = StdRng::seed_from_u64(48);
+    let Diagnosed { diagnosis, .. } = diagnosed(&vehicle, &[outside::draw("fan", SECONDS, &mut rng)], 48);
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained);
+    assert!(diagnosis.unexplained.iter().any(|s| s.along == Some("place")), "{:?}", diagnosis.unexplained);
+    assert!(named(&diagnosis).iter().all(|f| !["steady_wind", "gusts"].contains(&f.effect)), "{:?}", named(&diagnosis));
+}

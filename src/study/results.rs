@@ -98,7 +98,7 @@ impl Results {
         vec![
             (
                 "best snapshot",
-                "The one with the highest fixed-start lap completion; of equals the one with the shortest \
+                "The one with the highest fixed-start lap completion among those trained under whole penalties; of equals the one with the shortest \
                 median lap, then with most gates passed, then the latest. All metrics of a run are its best snapshot's."
                     .into(),
             ),
