@@ -87,6 +87,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let usable_s = logs.iter().map(|q| crate::flight::spans::length(&q.usable)).sum();
     let problem = problem(logs, vehicle);
     let mut selection = select::select(&problem, watch);
+    settle_clocks(&problem, &mut selection);
     let lost = settle_chance(&problem, &mut selection);
     watch("judging", 0.85);
     let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
@@ -168,6 +169,28 @@ fn outweighed(finding: &Finding, structure: &[Structure]) -> Option<&'static str
 /// By impact; what is only suspected comes last.
 fn rank(finding: &Finding) -> f64 {
     finding.impact + if finding.status == Status::Suspected { 0.0 } else { 1e6 }
+}
+
+/// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two of the same size.
+fn settle_clocks(problem: &Problem, selection: &mut Selection) {
+    /// Agreement of the two times, s, and as a share.
+    const SAME: [f64; 2] = [6e-4, 0.05];
+    let [Some(delay), Some(offset)] = ["rate_delay", "stream_offset"].map(effects::card) else { return };
+    let moved = mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>());
+    let [asked, stamped] = [delay, offset].map(|card| model::span(card).start);
+    let Some(i) = selection.added.iter().position(|a| a.card.id == delay.id || a.card.id == offset.id) else { return };
+    let mut x = selection.point.x.clone();
+    let late = x[asked] + x[stamped];
+    let both = selection.added.iter().filter(|a| a.card.id == delay.id || a.card.id == offset.id).count() > 1;
+    if moved == 0.0 || both || (late - moved).abs() > SAME[0] + SAME[1] * moved.abs() {
+        return;
+    }
+    (x[asked], x[stamped]) = (0.0, late);
+    let mut free = selection.point.free.clone();
+    free.retain(|k| *k != asked && *k != stamped);
+    free.push(stamped);
+    selection.added[i] = Added { card: offset, ties: Vec::new() };
+    selection.point = fit::fit(problem, &selection.whitener, &x, &free);
 }
 
 /// Lost commands and a short delay have the same mean: what single stick movements leave decides.

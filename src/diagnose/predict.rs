@@ -245,7 +245,9 @@ impl Predicted {
             return;
         }
         let k = model.sensors(x);
-        let offset = model.of(x, "stream_offset", "offset");
+        // A gyro that is late was not what the odometry's clock was to be moved to.
+        let late = model.of(x, "stream_offset", "offset");
+        let offset = if late == 0.0 { 0.0 } else { late - record.moved };
         let stretch = 1.0 / (1.0 + model.of(x, "clock_skew", "skew"));
         let tau = model.of(x, "velocity_lag", "tau");
         let gyro = shifted(record, offset);

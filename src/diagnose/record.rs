@@ -32,6 +32,8 @@ pub struct Fine {
 #[derive(Debug)]
 pub struct Record {
     pub name: String,
+    /// By how much the odometry's clock was moved to the gyro's, s.
+    pub moved: f64,
     pub fine: Fine,
     /// Of the thinned IMU, s.
     pub time: Vec<f64>,
@@ -100,6 +102,7 @@ impl Record {
         let volts = volts.filter(|(i, _)| *i < time.len() && usable[*i]).collect();
         let mut out = Self {
             name: log.name.clone(),
+            moved: quality.moved_s,
             usable,
             block: flight.block.iter().copied().step_by(every).collect(),
             sent: sent(quality, full_rate_rad_s),

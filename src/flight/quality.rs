@@ -62,6 +62,8 @@ pub struct Quality {
     /// The log with time ascending in every stream, repeated rows gone and clocks aligned.
     pub log: Log,
     pub streams: Vec<Summary>,
+    /// By how much the odometry's clock was moved to the IMU's, s.
+    pub moved_s: f64,
     /// The worst first.
     pub findings: Vec<Finding>,
     /// When the vehicle flies, undamaged and within its sensors' ranges.
@@ -99,9 +101,9 @@ pub fn check(log: &Log) -> Quality {
             "nothing can be identified",
         ));
         let parameters = coverage::told(&log, &[]);
-        return Quality { log, streams, findings, usable: Vec::new(), parameters };
+        return Quality { log, streams, moved_s: 0.0, findings, usable: Vec::new(), parameters };
     }
-    offset::align(&mut log, &mut findings);
+    let moved_s = offset::align(&mut log, &mut findings);
     let mut holes = timing::gaps(&log, &mut findings);
     holes.extend(phases::impacts(&log, &mut findings));
     holes.extend(phases::ground(&log, &mut findings));
@@ -114,5 +116,5 @@ pub fn check(log: &Log) -> Quality {
     outliers::count(&log, &mut findings);
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     let parameters = coverage::told(&log, &usable);
-    Quality { log, streams, findings, usable, parameters }
+    Quality { log, streams, moved_s, findings, usable, parameters }
 }

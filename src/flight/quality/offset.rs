@@ -86,8 +86,8 @@ fn mismatch(imu: &Stream<6>, integrals: &[Vec<f64>; 3], turns: &Turns, offset: f
     crate::stats::mean(&squares.iter().map(|x| x.min(cap)).collect::<Vec<_>>())
 }
 
-/// Moves the odometry's clock to the IMU's where both saw the same turns at different times.
-pub fn align(log: &mut Log, findings: &mut Vec<Finding>) {
+/// Moves the odometry's clock to the IMU's where both saw the same turns at different times; by how much, s.
+pub fn align(log: &mut Log, findings: &mut Vec<Finding>) -> f64 {
     let mut turns = turns(&log.odometry);
     let size = |turn: &[f64; 3]| turn.iter().map(|x| x * x).sum::<f64>().sqrt();
     let telling: Vec<bool> = turns.measured.iter().map(|turn| size(turn) > LEAST_TURN_RAD).collect();
@@ -96,7 +96,7 @@ pub fn align(log: &mut Log, findings: &mut Vec<Finding>) {
     let mut keep = telling.iter();
     turns.measured.retain(|_| *keep.next().unwrap_or(&false));
     if turns.spans.len() < LEAST_TURNS {
-        return;
+        return 0.0;
     }
     let integrals = integrals(&log.imu);
     let steps = (RANGE_S / STEP_S) as i32;
@@ -105,13 +105,13 @@ pub fn align(log: &mut Log, findings: &mut Vec<Finding>) {
     let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(0);
     if best == 0 || best + 1 == costs.len() || costs[best] > 0.5 * median(&costs) {
         // No clear minimum: the signs are judged elsewhere.
-        return;
+        return 0.0;
     }
     let (a, b, c) = (costs[best - 1], costs[best], costs[best + 1]);
     let vertex = 0.5 * (a - c) / (a - 2.0 * b + c);
     let offset = (best as f64 - f64::from(steps) + vertex) * STEP_S;
     if offset.abs() < LEAST_S {
-        return;
+        return 0.0;
     }
     let what = format!(
         "its turns come {:.1} ms {} the gyro's",
@@ -121,4 +121,5 @@ pub fn align(log: &mut Log, findings: &mut Vec<Finding>) {
     let so = "the odometry's clock is moved to the IMU's";
     findings.push(Finding::new(Severity::Warning, "clock_offset", "odometry", what, so));
     log.odometry.time_s.iter_mut().for_each(|t| *t += offset);
+    offset
 }
