@@ -11,6 +11,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 const MAP: u32 = 880;
 const PROFILE: u32 = 330;
+/// Of the randomised vehicles' places, 10 ms apart, every so many are drawn.
+const THINNED: usize = 3;
 
 /// An SVG: from above, and below it the distance from the nominal flight along it.
 pub fn svg(track: &Track, spread: &Spread, title: &str) -> anyhow::Result<String> {
@@ -27,7 +29,7 @@ pub fn svg(track: &Track, spread: &Spread, title: &str) -> anyhow::Result<String
         let mut chart = map::chart(&above, track, all.flatten().map(flat), title)?;
         map::spline(&mut chart, track)?;
         for path in &spread.randomised {
-            map::path(&mut chart, path.iter().map(flat), BLUE.mix(0.22).stroke_width(1))?;
+            map::path(&mut chart, path.iter().step_by(THINNED).map(flat), BLUE.mix(0.22).stroke_width(1))?;
         }
         map::path(&mut chart, spread.nominal.iter().map(flat), BLACK.stroke_width(3))?;
         map::gates(&mut chart, track)?;
