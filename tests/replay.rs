@@ -103,8 +103,10 @@ fn browsed(page: &str, script: &str) -> Option<String> {
     };
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("page.html");
-    // Errors of the page become part of it.
-    let caught = "<script>window.onerror = m => { document.documentElement.dataset.failed = m; };</script>";
+    // Errors of the page become part of it. Pictures come with the virtual time: the browser's own come when the machine has a screen
+    // and the leisure for it.
+    let caught = "<script>window.onerror = m => { document.documentElement.dataset.failed = m; };
+        window.requestAnimationFrame = draw => setTimeout(() => draw(performance.now()), 16);</script>";
     let page = page.replacen("<body>", &format!("<body>{caught}"), 1);
     let page = page.replace("</body>", &format!("<script>{script}</script></body>"));
     std::fs::write(&path, page).unwrap();
