@@ -24,12 +24,13 @@ pub mod predict;
 pub mod problem;
 pub mod random;
 pub mod record;
+pub mod ringing;
 pub mod select;
 pub mod skew;
 pub mod structure;
 pub mod whiten;
 
-use crate::effects;
+use crate::effects::{self, Kind};
 use crate::flight::quality::Quality;
 use crate::identify::data::Data;
 use crate::stats::mean;
@@ -57,6 +58,12 @@ const LEFT_OF_EXPLAINED: f64 = 0.2;
 const SURER: f64 = 0.37;
 /// What a finding explains has to be so many times the structure that is left.
 const ADEQUATE: f64 = 1.5;
+/// What has a memory, where it is unexplained, may be so many times what a finding explains; measured flights are never white.
+const MEMORY: f64 = 3.0;
+/// Share of what is unexplained that goes with time from which on a finding is not the same early and late.
+const CHANGES: f64 = 0.2;
+/// Share of a channel besides its own from which on a finding is about it.
+const ABOUT: f64 = 0.05;
 
 /// Flights and their diagnosis, with all that a report needs.
 pub struct Diagnosed {
@@ -106,18 +113,10 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     }
     let (drift, cause) = drift::find(&judge);
     findings.extend(cause);
-    watch("measuring the gain", 0.9);
-    let held = gain::measure(&problem, &selection);
-    for finding in &mut findings {
-        let one = judged.iter().find(|j| j.finding.effect == finding.effect);
-        let all = one.map_or(held.channels.clone(), |j| held.of_one(&problem, &j.change));
-        finding.gain = all.into_iter().filter(|(c, _)| finding.explained.contains_key(c)).collect();
-    }
     let unexplained = unexplained(&structure, &findings, &selection);
     for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected) {
-        if let Some(channel) = outweighed(finding, &structure) {
-            finding.status = Status::Suspected;
-            finding.why = Some(format!("more structure remains in {channel} than it explains"));
+        if let Some(why) = doubt(finding, &structure, &unexplained) {
+            (finding.status, finding.why) = (Status::Suspected, Some(why));
         }
     }
     for finding in findings.iter_mut().filter(|f| placed && f.effect == "steady_wind") {
@@ -130,6 +129,19 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         finding.status = Status::Suspected;
         finding.why = Some("structure remains in specific force z".into());
     }
+    watch("measuring the gain", 0.9);
+    // What is only suspected is no part of the extended vehicle.
+    let suspected: Vec<&str> = findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
+    let doubted = selection.added.iter().any(|a| suspected.contains(&a.card.id));
+    let kept = doubted.then(|| selection.without(&problem, &suspected));
+    let kept = kept.as_ref().unwrap_or(&selection);
+    let held = gain::measure(&problem, &selection, kept);
+    for finding in &mut findings {
+        let one = judged.iter().find(|j| j.finding.effect == finding.effect);
+        let is_held = finding.status != Status::Suspected;
+        let all = one.map_or(held.channels.clone(), |j| held.of_one(&problem, &j.change, is_held));
+        finding.gain = all.into_iter().filter(|(c, _)| finding.explained.contains_key(c)).collect();
+    }
     findings.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
     let verdict = match (unexplained.is_empty(), findings.is_empty()) {
         (false, _) => Verdict::Unexplained,
@@ -137,7 +149,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         (true, false) => Verdict::Effects,
     };
     let (detectable, not_detectable) = plan::judge(&problem, &selection.reach);
-    let extended = extend::vehicle(&judge, &findings);
+    let extended = extend::vehicle(&Judge::new(&problem, kept), &findings);
     let diagnosis = Diagnosis {
         verdict,
         logs: problem.records.iter().map(|r| r.name.clone()).collect(),
@@ -158,12 +170,33 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     Diagnosed { diagnosis, vehicle: extended, problem, selection }
 }
 
-/// The channel in which more structure is left than the finding explains, if it is the one that the finding is about.
-fn outweighed(finding: &Finding, structure: &[Structure]) -> Option<&'static str> {
-    let left = structure.iter().find(|s| s.channel == finding.channel)?;
-    let share = finding.explained.get(finding.channel)?.min(0.999_999);
-    let explained = left.rms * (share / (1.0 - share)).sqrt();
-    (left.structure_rms > explained / ADEQUATE).then_some(left.channel)
+/// Why a finding is no more than suspected beside what is left, if so.
+fn doubt(finding: &Finding, structure: &[Structure], unexplained: &[Structure]) -> Option<String> {
+    let explained = |s: &Structure| {
+        let share = finding.explained.get(s.channel)?.min(0.999_999);
+        (share > if s.channel == finding.channel { 1e-3 } else { ABOUT })
+            .then(|| s.rms * (share / (1.0 - share)).sqrt())
+    };
+    let more = |s: &Structure| format!("more structure remains in {} than it explains", s.channel);
+    if let Some(left) = structure.iter().find(|s| s.channel == finding.channel)
+        && explained(left).is_some_and(|explained| left.structure_rms > explained / ADEQUATE)
+    {
+        return Some(more(left));
+    }
+    // What swings pulls like a drag that comes late.
+    let drag = effects::card(finding.effect).is_some_and(|card| card.kind == Kind::Drag);
+    let most = structure.iter().filter_map(explained).fold(0.0, f64::max);
+    let swing = |s: &&Structure| s.along.is_some_and(ringing::is_swing) && s.structure_rms > most / MEMORY;
+    if let Some(left) = unexplained.iter().find(swing).filter(|_| drag) {
+        return Some(format!("something swings in {}, which looks like drag too", left.channel));
+    }
+    unexplained.iter().filter_map(|s| Some((s, explained(s)?))).find_map(|(left, explained)| {
+        if left.channel == finding.channel && left.coloured_rms > MEMORY * explained {
+            return Some(more(left));
+        }
+        let with_time = left.along.is_some_and(|along| along.ends_with("time") && left.along_share > CHANGES);
+        with_time.then(|| format!("what it explains in {} changes during the flight", left.channel))
+    })
 }
 
 /// By impact; what is only suspected comes last.
@@ -217,12 +250,15 @@ fn settle_chance(problem: &Problem, selection: &mut Selection) -> Option<random:
     } else if let Some(i) = selection.added.iter().position(|a| a.card.id == dropout.id) {
         // Its mean is there, its variance is not: the rival that has the same mean.
         let other = selection.added[i].ties.first().copied().or(effects::card("rate_delay"));
-        let other = other.filter(|o| selection.added.iter().all(|a| a.card.id != o.id))?;
-        x[at(other)] = x[at(dropout)] * CONTROL_S;
-        x[at(dropout)] = 0.0;
+        let other = other.filter(|o| selection.added.iter().all(|a| a.card.id != o.id));
+        let mean = std::mem::take(&mut x[at(dropout)]) * CONTROL_S;
         free.retain(|k| *k != at(dropout));
-        free.extend(model::span(other));
-        selection.added[i] = Added { card: other, ties: Vec::new() };
+        selection.added.remove(i);
+        if let Some(other) = other {
+            x[at(other)] = mean;
+            free.extend(model::span(other));
+            selection.added.insert(i, Added { card: other, ties: Vec::new() });
+        }
     } else {
         selection.added.iter_mut().for_each(|a| a.ties.retain(|c| c.id != dropout.id));
         return None;

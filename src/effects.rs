@@ -158,7 +158,7 @@ macro_rules! effects {
 // The order is that of every stage: what scales the thrust comes before what adds to it, what scales everything last.
 effects! {
     model:
-        rate_delay thrust_delay rate_second_order rate_slew_limit
+        rate_delay yaw_delay thrust_delay rate_second_order rate_slew_limit
         rate_expo response_voltage rate_cross_coupling gyroscopic_coupling yaw_authority_loss weak_motor thrust_asymmetric_lag
         voltage_sag voltage_relaxation ocv_curve
         voltage_compensation throttle_offset mixer_thrust_loss thrust_fade ground_effect propwash

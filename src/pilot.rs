@@ -46,6 +46,8 @@ pub struct Limits {
 
 /// Time on the ground before taking off, s.
 const GROUND_S: f64 = 2.0;
+/// Length from which a flight is long, s.
+const LONG_S: f64 = 200.0;
 /// Height at which the first manoeuvre is planned, m.
 const TAKEN_OFF_M: f64 = 12.0;
 /// Time kept for the landing, s.
@@ -84,11 +86,12 @@ pub struct Pilot {
 }
 
 impl Pilot {
-    /// A pilot that flies all kinds of manoeuvres; `seed` decides their order and sizes.
+    /// A pilot that flies all kinds of manoeuvres, but for the low hover in a short flight; `seed` decides their order and sizes.
     pub fn new(seed: u64, limits: Limits) -> Self {
         Self {
             limits,
-            kinds: Kind::ALL.to_vec(),
+            // A low hover shows nothing but the ground effect: a short flight has no time for it.
+            kinds: Kind::ALL.into_iter().filter(|kind| limits.seconds > LONG_S || *kind != Kind::LowHover).collect(),
             deck: Vec::new(),
             flown: [0; Kind::ALL.len()],
             rng: Philox::new(seed).sequence(Stream::Pilot, 0, 0),
@@ -182,7 +185,7 @@ impl Phase {
             Phase::TakeOff if view.position.z > TAKEN_OFF_M => None,
             Phase::TakeOff => Some(Demand::at(Vector3::new(0.0, 0.0, 4.0))),
             Phase::Approach(plan) => plan.approach(now),
-            Phase::Manoeuvre(_) if bounds::leaves(view, now.limits) => None,
+            Phase::Manoeuvre(plan) if !plan.low && bounds::leaves(view, now.limits) => None,
             Phase::Manoeuvre(plan) => plan.script.demand(now, rng),
         };
         demand.map(Some)

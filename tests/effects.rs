@@ -224,6 +224,31 @@ fn rate_delay_is_exact() {
     }
 }
 
+/// Yaw has a time of its own; no command comes before it was sent.
+#[test]
+fn yaw_comes_later_than_roll() {
+    let commands = |effects: &[(&str, f64)]| {
+        let vehicle = effects.iter().fold(seed_class(), |vehicle, (id, size)| with(vehicle, id, &[*size]));
+        let p = parameters(&vehicle);
+        let mut s = State::new([0.0, 0.0, 10.0], [0.0; 3], [1.0, 0.0, 0.0, 0.0], [0.0; 4], 24.0);
+        let mut next = || {
+            s = step(&s, &p, [0.5, 0.0, 0.5, 0.0]);
+            [s.command[0], s.command[2]]
+        };
+        (0..12).map(|_| next()).collect::<Vec<_>>()
+    };
+    let prompt = commands(&[("vertical_drag", 1e-12)]);
+    let late = commands(&[("yaw_delay", 0.03)]);
+    for i in 0..9 {
+        assert!((late[i][0] - prompt[i][0]).abs() < 1e-9, "roll, step {i}");
+        assert!((late[i + 3][1] - prompt[i][1]).abs() < 1e-9, "yaw, step {i}");
+    }
+    let earlier = commands(&[("rate_delay", 0.05), ("yaw_delay", -0.02)]);
+    assert!((0..7).all(|i| (earlier[i + 5][0] - prompt[i][0]).abs() < 1e-9));
+    assert!((0..9).all(|i| (earlier[i + 3][1] - prompt[i][1]).abs() < 1e-9));
+    assert_eq!(commands(&[("yaw_delay", -0.02)]), commands(&[("vertical_drag", 1e-12)]));
+}
+
 /// State after `steps` steps of `action` from rest at 10 m.
 fn held(p: &Parameters<f64>, from: [f64; 4], action: [f64; 4], voltage: f64, steps: usize) -> State<f64> {
     let mut s = State::new([0.0, 0.0, 10.0], [0.0; 3], [1.0, 0.0, 0.0, 0.0], from, voltage);

@@ -10,7 +10,9 @@ pub fn print(all: &[Judged]) {
     shares(all);
     confusion(all);
     parameters(all);
-    let captured: Vec<f64> = all.iter().filter_map(|j| j.answer.as_ref().ok()?.captured).collect();
+    // What the catalogue has no name for cannot be gained.
+    let gains = |j: &&Judged| !matches!(j.group, Group::Outside | Group::None | Group::Drift);
+    let captured: Vec<f64> = all.iter().filter(gains).filter_map(|j| j.answer.as_ref().ok()?.captured).collect();
     if !captured.is_empty() {
         let [median, low] = [0.5, 0.1].map(|at| 100.0 * quantile(captured.clone(), at));
         println!("\ncaptured gain: median {median:.1} %, a tenth below {low:.1} % (of {})", captured.len());

@@ -208,7 +208,13 @@ pub fn refit(problem: &Problem, whitener: &Whitener, point: &Point, own: &[usize
     at
 }
 
-/// Covariance of the fitted numbers of `point` by leaving out one stretch of time after the other (the cluster jackknife, CR3).
+/// Stretches of time that are also left out together, and the least number of such groups that tells anything: what is wrong for longer than a
+/// stretch is no new evidence in the next.
+const GROUP: usize = 5;
+const GROUPS: usize = 20;
+
+/// Covariance of the fitted numbers of `point` by leaving out one stretch of time after the other (the cluster jackknife, CR3); wider where leaving out
+/// longer ones says so.
 pub fn covariance(problem: &Problem, whitener: &Whitener, point: &Point) -> Option<DMatrix<f64>> {
     let n = point.free.len();
     let residual = whitener.apply(&point.residual, &problem.rows);
@@ -218,19 +224,23 @@ pub fn covariance(problem: &Problem, whitener: &Whitener, point: &Point) -> Opti
     let own: Vec<usize> = (0..n).collect();
     let whole = Grams::pick(&grams.sum, &own, &own);
     let everything = inverse(&whole, &prior)?;
-    let moves: Vec<DVector<f64>> = grams
-        .blocks
-        .par_iter()
-        .filter(|block| block[(n, n)] > 0.0)
-        .map(|block| {
-            let rest = &whole - Grams::pick(block, &own, &own);
-            let u = Grams::pick(block, &own, &[n]).column(0).into_owned();
-            inverse(&rest, &prior).unwrap_or_else(|| everything.clone()) * u
-        })
-        .collect();
-    let mut out = DMatrix::zeros(n, n);
-    for moved in moves {
-        out += &moved * moved.transpose();
+    let moved = |group: &[DMatrix<f64>]| {
+        let out = group.iter().fold(DMatrix::zeros(n + 1, n + 1), |sum, gram| sum + gram);
+        let u = Grams::pick(&out, &own, &[n]).column(0).into_owned();
+        (out[(n, n)] > 0.0)
+            .then(|| inverse(&(&whole - Grams::pick(&out, &own, &own)), &prior).unwrap_or(everything.clone()) * u)
+    };
+    let jackknife = |size: usize| {
+        let moves: Vec<DVector<f64>> = grams.blocks.par_chunks(size).filter_map(moved).collect();
+        let spread = moves.iter().fold(DMatrix::zeros(n, n), |sum, moved| sum + moved * moved.transpose());
+        (spread, moves.len())
+    };
+    let (single, _) = jackknife(1);
+    let (grouped, count) = jackknife(GROUP);
+    if count < GROUPS {
+        return Some(single);
     }
-    Some(out)
+    let wider = |i: usize| (grouped[(i, i)] / single[(i, i)].max(1e-300)).max(1.0).sqrt();
+    let scale: Vec<f64> = (0..n).map(wider).collect();
+    Some(DMatrix::from_fn(n, n, |i, j| single[(i, j)] * scale[i] * scale[j]))
 }

@@ -6,18 +6,21 @@ use super::horizon;
 use super::model::BEGIN;
 use super::predict::CHANNELS;
 use super::problem::Problem;
-use super::select::Selection;
+use super::select::{self, Selection};
 use super::structure::NAMES;
 use super::whiten::Whitener;
 use crate::identify::data::TRAIN_SHARE;
 use crate::stats::mean;
 use std::collections::BTreeMap;
 
+/// Whitened squares over those that are left at least, from which on there is something to gain.
+const WORTH: f64 = 1.05;
+
 /// Base and extended model, fitted on one part of the flight and judged on the other.
 pub struct HeldOut {
     pub channels: BTreeMap<&'static str, Gain>,
     pub horizons: Vec<Ahead>,
-    /// Share of the achievable fall of the whitened squares.
+    /// Share of the achievable fall of the whitened squares; none where there is nothing to gain.
     pub captured: Option<f64>,
     extended: Point,
     out: Vec<bool>,
@@ -25,12 +28,15 @@ pub struct HeldOut {
 
 impl HeldOut {
     /// What one effect is worth beside the others: the extended model against itself without that effect, whose absence moves the numbers by `change`.
-    pub fn of_one(&self, problem: &Problem, change: &[f64]) -> BTreeMap<&'static str, Gain> {
-        let x: Vec<f64> = self.extended.x.iter().zip(change).map(|(x, by)| x + by).collect();
+    /// An effect that is only suspected is not in the extended model: there it is added.
+    pub fn of_one(&self, problem: &Problem, change: &[f64], held: bool) -> BTreeMap<&'static str, Gain> {
+        let sign = if held { 1.0 } else { -1.0 };
+        let x: Vec<f64> = self.extended.x.iter().zip(change).map(|(x, by)| x + sign * by).collect();
         let state = problem.predict(&x);
         let residual = problem.residuals(&state);
-        let without = Point { x, state, free: Vec::new(), white: Vec::new(), residual, cost: Vec::new() };
-        channels(problem, &without, &self.extended, &self.out)
+        let other = Point { x, state, free: Vec::new(), white: Vec::new(), residual, cost: Vec::new() };
+        let [without, with] = if held { [&other, &self.extended] } else { [&self.extended, &other] };
+        channels(problem, without, with, &self.out)
     }
 }
 
@@ -45,17 +51,14 @@ fn held_out(problem: &Problem) -> Vec<bool> {
     out
 }
 
-/// Fits on the one part, predicts the other.
-pub fn measure(problem: &Problem, selection: &Selection) -> HeldOut {
+/// Fits on the one part, predicts the other: the base, and what is `kept` of the `selection`. What could be gained at most is what all that was tried would.
+pub fn measure(problem: &Problem, selection: &Selection, kept: &Selection) -> HeldOut {
     let out = held_out(problem);
     let train = selection.whitener.without(&problem.rows, &out);
     let test = selection.whitener.without(&problem.rows, &out.iter().map(|o| !o).collect::<Vec<_>>());
     let base = fit::fit(problem, &train, &selection.base.x, &selection.base.free);
-    let extended = if selection.added.is_empty() {
-        base.clone()
-    } else {
-        fit::fit(problem, &train, &selection.point.x, &selection.point.free)
-    };
+    let extended =
+        if kept.added.is_empty() { base.clone() } else { fit::fit(problem, &train, &kept.point.x, &kept.point.free) };
     // A flight that was held out as a whole has not told yet with which voltage it began.
     let last = problem.records.len() - 1;
     let (base, extended) = if last > 0 {
@@ -69,10 +72,9 @@ pub fn measure(problem: &Problem, selection: &Selection) -> HeldOut {
         (base, extended)
     };
     let squares = |p: &Point| fit::costs(problem, &test.apply(&p.residual, &problem.rows)).iter().sum::<f64>();
-    let floor = test.expected();
     let (before, after) = (squares(&base), squares(&extended));
-    let captured =
-        (!selection.added.is_empty() && before > 1.05 * floor).then(|| (before - after) / (before - floor).max(1e-9));
+    let floor = after - select::left_to_gain(problem, &test, &extended, selection);
+    let captured = (before > WORTH * floor).then(|| (before - after) / (before - floor).max(1e-9));
     HeldOut {
         channels: channels(problem, &base, &extended, &out),
         horizons: horizons(problem, &base, &extended, &out),

@@ -18,6 +18,9 @@ use std::collections::BTreeMap;
 pub const REPLICATED: f64 = 15.0;
 /// Standard deviations that its size has to be.
 const SURE: f64 = 5.0;
+/// An effect that is rarely flown is also named where at least so many stretches show it by themselves, hold at least this share of all that the flight
+/// tells of it, and its size is so many standard deviations.
+const RARE: (f64, f64, f64) = (4.0, 0.7, 8.0);
 /// 97.5 % quantile of the normal distribution.
 const Z: f64 = 1.96;
 /// Gravity, for turning angles into velocities, m/s2.
@@ -35,7 +38,17 @@ pub struct Judge<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Replicated {
     count: f64,
+    /// Stretches that show it by themselves, and their share of the information.
+    alone: f64,
+    held: f64,
     sure: f64,
+}
+
+impl Replicated {
+    fn evident(&self) -> bool {
+        let rarely = self.alone >= RARE.0 && self.held >= RARE.1 && self.sure >= RARE.2;
+        self.count >= REPLICATED && self.sure >= SURE || rarely
+    }
 }
 
 /// A judged effect, and the numbers of the model without it.
@@ -92,23 +105,23 @@ impl<'a> Judge<'a> {
         }
         let Some(score) = score(&grams, &rest, &own, n, &vec![0.0; n + 1]) else { return Replicated::default() };
         let size = DVector::from_iterator(own.len(), sizes.iter().map(|(_, size)| *size));
-        let mut alone: f64 = 0.0;
+        let (mut alone, mut held, mut all): (f64, f64, f64) = (0.0, 0.0, 0.0);
         for block in &score.blocks {
             // Along the fitted direction: what this stretch alone makes of its size, in standard deviations.
             let (left, right) = block;
             let information = (size.transpose() * left * &size)[(0, 0)].max(1e-12);
             let agrees = size.dot(&right.column(0)) / information.sqrt();
-            alone += if agrees > 2.0 {
-                1.0
+            all += information;
+            if agrees > 2.0 {
+                (alone, held) = (alone + 1.0, held + information);
             } else if agrees < -2.0 {
-                -1.0
-            } else {
-                0.0
-            };
+                (alone, held) = (alone - 1.0, held - information);
+            }
         }
         let covariance = Grams::pick(&self.covariance, &own, &own);
         let sure = inverse(&covariance, &vec![0.0; own.len()]).map_or(0.0, |c| (size.transpose() * c * &size)[(0, 0)]);
-        Replicated { count: alone.max(score.evidence / own.len() as f64), sure: sure.max(0.0).sqrt() }
+        let count = alone.max(score.evidence / own.len() as f64);
+        Replicated { count, alone, held: held / all, sure: sure.max(0.0).sqrt() }
     }
 
     /// Change of the prediction that the effect makes, by channel, beside what the other numbers could take over, in physical units; and
@@ -175,9 +188,10 @@ impl<'a> Judge<'a> {
             }
         }
         let parameters = self.parameters(card);
-        let Replicated { count: stretches, sure } = self.stretches(card);
+        let replicated = self.stretches(card);
+        let stretches = replicated.count;
         let material = is_material(card, &self.point().x);
-        let evident = stretches >= REPLICATED && sure >= SURE;
+        let evident = replicated.evident();
         let status = if !evident {
             Status::Suspected
         } else if added.ties.is_empty() {

@@ -462,7 +462,8 @@ fn spin(p: &Parameters<f64>, record: &Record, command: &[[f64; 4]]) -> Vec<[f64;
 #[inline(always)]
 fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offset: f64) -> Responses {
     let late = extended::lateness(p);
-    let late = [late.rates + offset, late.thrust];
+    // Roll and pitch, yaw, and thrust arrive each at their time.
+    let late = [late[0] + offset, late[2] + offset, late[3]];
     let stretch = 1.0 / (1.0 + model.of(x, "clock_skew", "skew"));
     let lost = model.of(x, "command_dropout", "probability");
     let n = record.time.len();
@@ -477,7 +478,7 @@ fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offse
         let now = record.sent[i].1[k];
         if i == 0 || lost == 0.0 { now } else { now + lost * (record.sent[i - 1].1[k] - now) }
     };
-    let mut at = [0, 0];
+    let mut at = [0, 0, 0];
     let (mut command, mut slope, mut sent) = (begin, [0.0; 3], begin);
     let mut now = first;
     for i in 0..n {
@@ -491,7 +492,13 @@ fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offse
         let voltage = supplied(p, record, i);
         loop {
             let due = |g: usize| record.sent.get(at[g] + 1).map_or(f64::INFINITY, |next| next.0 + late[g]);
-            let (g, next) = if due(0) <= due(1) { (0, due(0)) } else { (1, due(1)) };
+            let (g, next) = if due(0) <= due(1).min(due(2)) {
+                (0, due(0))
+            } else if due(1) <= due(2) {
+                (1, due(1))
+            } else {
+                (2, due(2))
+            };
             let until = next.min(t);
             if until > now {
                 (command, slope) = extended::respond(p, command, slope, sent, voltage, until - now);
@@ -501,8 +508,7 @@ fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offse
                 break;
             }
             at[g] += 1;
-            let range = if g == 0 { 0..3 } else { 3..4 };
-            range.for_each(|k| sent[k] = arrives(at[g], k));
+            [0..2, 2..3, 3..4][g].clone().for_each(|k| sent[k] = arrives(at[g], k));
         }
         out.command.push(command);
         out.lag.push((0..3).map(|k| (sent[k] - command[k]).abs()).sum());

@@ -24,17 +24,22 @@ pub struct Lost {
     /// Movements whose whole error is there, and those with about half of it: a loss is all or nothing.
     pub whole: usize,
     pub half: usize,
+    /// Movements that were answered before they were due: a loss never is, a link whose delay varies is as often early as late.
+    pub early: usize,
 }
 
 /// A movement is looked at where its loss would show beyond so many standard deviations of the noise.
 const CLEAR: f64 = 12.0;
+/// The same for an answer that comes early, and the share of a movement that it has to be.
+const EARLY_CLEAR: f64 = 4.0;
+const EARLY: f64 = 0.4;
 
 /// Holds the rate residuals against the error that each lost command would leave: the change of the command, for one period, behind the lag.
 pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
     let x = &selection.point.x;
     let p = problem.model.parameters(x);
-    let late = crate::dynamics::extended::lateness(&p).rates;
-    let (mut whole, mut half, mut kept) = (0usize, 0usize, 0usize);
+    let late = crate::dynamics::extended::lateness(&p);
+    let (mut whole, mut half, mut kept, mut early) = (0usize, 0usize, 0usize, 0usize);
     for axis in 0..3 {
         let (rows, residual) = (&problem.rows[RATE + axis], &selection.point.residual[RATE + axis]);
         let noise = robust_sd(residual);
@@ -53,7 +58,7 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
                 if change.abs() < CLEAR * noise || earlier.abs() > 0.25 * change.abs() {
                     continue;
                 }
-                let (begin, held) = (pair[1].0 + late, pair[1].0 - pair[0].0);
+                let (begin, held) = (pair[1].0 + late[axis], pair[1].0 - pair[0].0);
                 let rise = |t: f64| if t > 0.0 { 1.0 - (-t / tau).exp() } else { 0.0 };
                 let first = middles.partition_point(|t| *t < begin);
                 let (mut along, mut square) = (0.0, 0.0);
@@ -66,6 +71,14 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
                 if square < (CLEAR * noise).powi(2) || !along.is_finite() {
                     continue;
                 }
+                let due = middles.partition_point(|t| *t < begin - held);
+                let (mut ahead, mut most) = (0.0, 0.0);
+                for bin in due..first {
+                    let shape = change * rise(middles[bin] - (begin - held));
+                    ahead += shape * by_bin[bin];
+                    most += shape * shape;
+                }
+                early += usize::from(most > (EARLY_CLEAR * noise).powi(2) && ahead > EARLY * most);
                 match along / square {
                     a if (0.7..1.4).contains(&a) => whole += 1,
                     a if (0.3..0.7).contains(&a) => half += 1,
@@ -77,12 +90,15 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
     let n = (whole + half + kept).max(1) as f64;
     let share = (whole + half) as f64 / n;
     let spread = 1.96 * (share * (1.0 - share) / n).sqrt();
-    Lost { share, interval: [share - spread, share + spread], whole, half }
+    Lost { share, interval: [share - spread, share + spread], whole, half, early }
 }
 
 /// Whether commands get lost, by a share that matters.
 pub fn are_lost(lost: &Lost, card: &Card) -> bool {
-    lost.whole >= 12 && lost.whole > 2 * lost.half && lost.share > 0.5 * card.parameters[0].typical[0]
+    lost.whole >= 12
+        && lost.whole > 2 * lost.half
+        && lost.whole > 2 * lost.early
+        && lost.share > 0.5 * card.parameters[0].typical[0]
 }
 
 /// Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both horizontal axes.
@@ -132,7 +148,9 @@ pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Op
     let (least, most) = quarters.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), q| (l.min(*q), m.max(*q)));
     let lasting = least > 0.1 * most;
     let balanced = lags[0][0].min(lags[1][0]) > 0.15 * lags[0][0].max(lags[1][0]);
+    let swings = !super::ringing::find(problem, &selection.point.residual).is_empty();
     if stretches < REPLICATED
+        || swings
         || sigma < LEAST_GUST
         || !balanced
         || !lasting

@@ -3,10 +3,11 @@
 use super::fit::{self, Point};
 use super::gram::{Grams, score};
 use super::judge::is_material;
-use super::model::{BEGIN, DISCHARGE, TAU, cards, span};
+use super::model::{BEGIN, DISCHARGE, Stage, TAU, cards, span};
 use super::problem::{Problem, Values};
 use super::whiten::Whitener;
 use crate::effects::{Card, Kind};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Most effects that are added.
@@ -32,6 +33,19 @@ pub const ABSORBED: f64 = 2e-3;
 pub struct Direction {
     pub card: &'static Card,
     pub start: Vec<(usize, f64)>,
+}
+
+/// A direction with the change of the prediction that it makes, plain and whitened.
+pub struct Column {
+    direction: Direction,
+    change: Values,
+    white: Values,
+}
+
+impl Column {
+    fn card(&self) -> &'static Card {
+        self.direction.card
+    }
 }
 
 /// An effect that was tried beside what stands.
@@ -77,6 +91,27 @@ pub struct Selection {
     /// The fit of the compact model alone, under the same whitening.
     pub base: Point,
     pub reach: Vec<Reach>,
+    /// Causes that were not added.
+    pub others: Vec<Column>,
+}
+
+impl Selection {
+    /// The same without the effects `ids`, fitted again.
+    pub fn without(&self, problem: &Problem, ids: &[&str]) -> Self {
+        let gone = |a: &Added| ids.contains(&a.card.id);
+        let dropped: Vec<usize> = self.added.iter().filter(|a| gone(a)).flat_map(|a| span(a.card)).collect();
+        let mut x = self.point.x.clone();
+        dropped.iter().for_each(|&k| x[k] = 0.0);
+        let free: Vec<usize> = self.point.free.iter().copied().filter(|k| !dropped.contains(k)).collect();
+        Self {
+            point: fit::fit(problem, &self.whitener, &x, &free),
+            whitener: self.whitener.clone(),
+            added: self.added.iter().filter(|a| !gone(a)).cloned().collect(),
+            base: self.base.clone(),
+            reach: Vec::new(),
+            others: Vec::new(),
+        }
+    }
 }
 
 /// An added effect.
@@ -121,7 +156,8 @@ pub fn directions(card: &'static Card) -> Vec<Direction> {
         return numbers.iter().enumerate().map(|(i, &k)| Direction { card, start: vec![(k, sizes(i)[0])] }).collect();
     }
     let signs: &[f64] = if card.parameters[0].low < 0.0 { &[1.0, -1.0] } else { &[1.0] };
-    let wanted = if card.kind == Kind::Timing || card.id == "propwash" || card.kind == Kind::Sensor { 3 } else { 1 };
+    let shifts = card.kind == Kind::Timing || card.id == "propwash" || card.kind == Kind::Sensor;
+    let wanted = if shifts { 4 - signs.len() } else { 1 };
     let sizes = sizes(0).into_iter().take(wanted);
     sizes
         .flat_map(|s| signs.iter().map(move |sign| sign * s))
@@ -141,13 +177,8 @@ pub fn candidates(problem: &Problem, held: &[&'static Card]) -> Vec<&'static Car
         .collect()
 }
 
-/// All directions with the change of the prediction that each makes, whitened; those that change nothing are left out.
-fn columns(
-    problem: &Problem,
-    whitener: &Whitener,
-    point: &Point,
-    cards: &[&'static Card],
-) -> Vec<(Direction, Values, Values)> {
+/// The columns of all directions; those that change nothing are left out.
+fn columns(problem: &Problem, whitener: &Whitener, point: &Point, cards: &[&'static Card]) -> Vec<Column> {
     let mut all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
     if let Some(card) = cards.iter().find(|card| card.id == "clock_skew")
         && let Some(skew) = super::skew::estimate(problem, &point.state, &point.residual)
@@ -161,9 +192,39 @@ fn columns(
         let change = problem.secant(&point.state, &point.x, &d.start, 1.0);
         let finite = change.iter().flatten().all(|x| x.is_finite());
         let white = whitener.apply(&change, &problem.rows);
-        (finite && !change.iter().all(Vec::is_empty)).then_some((d, change, white))
+        (finite && !change.iter().all(Vec::is_empty)).then_some(Column { direction: d, change, white })
     };
     all.into_par_iter().filter_map(one).collect()
+}
+
+/// The columns after the last of `held` was added: made anew where it moved in time or in voltage what they change, and of the causes that were tied with
+/// it; else as they were.
+fn renewed(
+    problem: &Problem,
+    whitener: &Whitener,
+    point: &Point,
+    held: &[&'static Card],
+    tied: &[(&'static Card, f64)],
+    mut found: Vec<Column>,
+) -> Vec<Column> {
+    let Some(last) = held.last() else { return found };
+    found.retain(|c| c.card().id != last.id);
+    let of = |card: &Card| span(card).map(|k| &problem.model.numbers[k]);
+    let early = of(last).any(|n| n.stage <= Stage::Battery);
+    let (rates, forces) = (of(last).any(|n| n.rates), of(last).any(|n| n.forces));
+    let stale = |c: &Column| {
+        early && of(c.card()).any(|n| rates && n.rates || forces && n.forces)
+            || tied.iter().any(|(card, _)| card.id == c.card().id)
+            || rivals(last, c.card())
+    };
+    found.par_iter_mut().filter(|c| stale(c)).for_each(|c| {
+        let change = problem.secant(&point.state, &point.x, &c.direction.start, 1.0);
+        if change.iter().flatten().all(|x| x.is_finite()) {
+            c.white = whitener.apply(&change, &problem.rows);
+            c.change = change;
+        }
+    });
+    found
 }
 
 /// Adds effects until none is worth it.
@@ -183,11 +244,15 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
     let mut added: Vec<Added> = Vec::new();
     let mut reach = Vec::new();
     let mut pending: Vec<(&'static Card, f64)> = Vec::new();
+    let mut found: Vec<Column> = Vec::new();
     for round in 0..=MOST {
         watch("weighing causes", 0.2 + 0.6 * round as f64 / MOST as f64);
         let held: Vec<&'static Card> = added.iter().map(|a| a.card).collect();
-        let cards = candidates(problem, &held);
-        let mut found = columns(problem, &whitener, &point, &cards);
+        found = if round == 0 {
+            columns(problem, &whitener, &point, &candidates(problem, &held))
+        } else {
+            renewed(problem, &whitener, &point, &held, &pending, found)
+        };
         // Noise is what is left when everything is taken off that any cause could explain.
         for _ in 0..if round == 0 { 2 } else { 1 } {
             whitener = saturated(problem, &whitener, &point, &found);
@@ -196,7 +261,7 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
             } else {
                 fit::fit(problem, &whitener, &point.x, &point.free)
             };
-            found.iter_mut().for_each(|(_, change, white)| *white = whitener.apply(change, &problem.rows));
+            found.par_iter_mut().for_each(|c| c.white = whitener.apply(&c.change, &problem.rows));
         }
         let (scored, reached) = rank(problem, &whitener, &point, &found, round == 0);
         if round == 0 {
@@ -205,7 +270,7 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
         // What had the same gain for another reason has it still.
         if let Some(last) = added.last_mut() {
             let still = |card: &Card| {
-                let gains = scored.iter().filter(|s| found[s.0].0.card.id == card.id).map(|s| s.1);
+                let gains = scored.iter().filter(|s| found[s.0].card().id == card.id).map(|s| s.1);
                 gains.fold(0.0, f64::max)
             };
             last.ties =
@@ -238,7 +303,7 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
         point = fit::fit(problem, &whitener, &best.point.x, &best.point.free);
     }
     let base = if added.is_empty() { point.clone() } else { fit::fit(problem, &whitener, &problem.model.base, &free) };
-    Selection { point, whitener, added, base, reach }
+    Selection { point, whitener, added, base, reach, others: found }
 }
 
 fn rivals(a: &Card, b: &Card) -> bool {
@@ -254,20 +319,14 @@ fn tied(best: &Trial, other: &Trial) -> bool {
 }
 
 /// The whitener of what is left when all columns are taken off.
-fn saturated(problem: &Problem, whitener: &Whitener, point: &Point, found: &[(Direction, Values, Values)]) -> Whitener {
+fn saturated(problem: &Problem, whitener: &Whitener, point: &Point, found: &[Column]) -> Whitener {
     let residual = whitener.apply(&point.residual, &problem.rows);
-    let all: Vec<&Values> = point.white.iter().chain(found.iter().map(|(_, _, w)| w)).chain([&residual]).collect();
+    let all: Vec<&Values> = point.white.iter().chain(found.iter().map(|c| &c.white)).chain([&residual]).collect();
     let grams = Grams::new(&all, &problem.rows, problem.blocks);
-    let n = all.len() - 1;
-    let own: Vec<usize> = (0..n).collect();
-    let square = Grams::pick(&grams.sum, &own, &own);
-    // Columns at several sizes of one effect are nearly the same: a small ridge decides among them.
-    let ridge: Vec<f64> = (0..n).map(|i| 1e-4 * square[(i, i)] + 1e-12).collect();
-    let Some(inner) = super::gram::inverse(&square, &ridge) else { return whitener.clone() };
-    let beta = inner * Grams::pick(&grams.sum, &own, &[n]);
+    let Some((beta, _)) = together(&grams) else { return whitener.clone() };
     let mut left = point.residual.clone();
     let raw: Vec<Values> = point.free.par_iter().map(|&k| problem.slope(&point.state, &point.x, k)).collect();
-    for (j, column) in raw.iter().chain(found.iter().map(|(_, change, _)| change)).enumerate() {
+    for (j, column) in raw.iter().chain(found.iter().map(|c| &c.change)).enumerate() {
         for (left, column) in left.iter_mut().zip(column) {
             left.iter_mut().zip(column).for_each(|(l, x)| *l -= beta[(j, 0)] * x);
         }
@@ -275,17 +334,39 @@ fn saturated(problem: &Problem, whitener: &Whitener, point: &Point, found: &[(Di
     Whitener::of(&left, &problem.rows)
 }
 
+/// By how much the whitened squares of `point` would still fall if every number and every cause were fitted, less what that takes of the noise alone.
+pub fn left_to_gain(problem: &Problem, whitener: &Whitener, point: &Point, selection: &Selection) -> f64 {
+    let own = fit::whitened_slopes(problem, whitener, &point.state, &point.x, &selection.point.free);
+    let causes: Vec<Values> = selection.others.par_iter().map(|c| whitener.apply(&c.change, &problem.rows)).collect();
+    let residual = whitener.apply(&point.residual, &problem.rows);
+    let all: Vec<&Values> = own.iter().chain(&causes).chain([&residual]).collect();
+    let grams = Grams::new(&all, &problem.rows, problem.blocks);
+    let Some((beta, n)) = together(&grams) else { return 0.0 };
+    let along = Grams::pick(&grams.sum, &(0..n).collect::<Vec<_>>(), &[n]);
+    ((beta.transpose() * along)[(0, 0)] - n as f64).max(0.0)
+}
+
+/// All columns of `grams` but the last, fitted to the last, and how many they are.
+fn together(grams: &Grams) -> Option<(DMatrix<f64>, usize)> {
+    let n = grams.sum.nrows() - 1;
+    let own: Vec<usize> = (0..n).collect();
+    let square = Grams::pick(&grams.sum, &own, &own);
+    // Columns at several sizes of one effect are nearly the same: a small ridge decides among them.
+    let ridge: Vec<f64> = (0..n).map(|i| 1e-4 * square[(i, i)] + 1e-12).collect();
+    Some((super::gram::inverse(&square, &ridge)? * Grams::pick(&grams.sum, &own, &[n]), n))
+}
+
 /// Directions by the expected fall of the whitened squares, the best first; and what the log could show of each effect.
 fn rank(
     problem: &Problem,
     whitener: &Whitener,
     point: &Point,
-    found: &[(Direction, Values, Values)],
+    found: &[Column],
     reach_too: bool,
 ) -> (Vec<(usize, f64, f64)>, Vec<Reach>) {
     let residual = whitener.apply(&point.residual, &problem.rows);
     let n = point.white.len();
-    let all: Vec<&Values> = point.white.iter().chain(found.iter().map(|(_, _, w)| w)).chain([&residual]).collect();
+    let all: Vec<&Values> = point.white.iter().chain(found.iter().map(|c| &c.white)).chain([&residual]).collect();
     let grams = Grams::new(&all, &problem.rows, problem.blocks);
     let rest: Vec<usize> = (0..n).collect();
     let mut prior: Vec<f64> = point.free.iter().map(|&k| problem.model.numbers[k].trust.powi(-2)).collect();
@@ -306,19 +387,19 @@ fn rank(
         return (order, reach);
     }
     for (j, s) in scores.iter().enumerate() {
-        let (Some(s), card) = (s, found[j].0.card) else { continue };
+        let (Some(s), card) = (s, found[j].card()) else { continue };
         if reach.iter().any(|r| r.card.id == card.id) {
             continue;
         }
-        let size = found[j].0.start[0].1;
+        let size = found[j].direction.start[0].1;
         let (information, kept) = (s.information[0] / (size * size), s.information[0] / s.raw[0].max(1e-300));
         let near = |i: usize| {
             // Information on the first that the second leaves, as a share.
             let alone = s.information[0];
             let other = score(&grams, &[&rest[..], &[n + i]].concat(), &[n + j], all.len() - 1, &prior)?;
-            Some((found[i].0.card.id, (1.0 - other.information[0] / alone).clamp(0.0, 1.0).sqrt()))
+            Some((found[i].card().id, (1.0 - other.information[0] / alone).clamp(0.0, 1.0).sqrt()))
         };
-        let rivals = (0..found.len()).filter(|&i| card.rivals.contains(&found[i].0.card.id));
+        let rivals = (0..found.len()).filter(|&i| card.rivals.contains(&found[i].card().id));
         let nearest = rivals.filter_map(near).max_by(|a, b| a.1.total_cmp(&b.1));
         reach.push(Reach { card, information, kept, nearest });
     }
@@ -329,6 +410,7 @@ fn rank(
 fn delayed(card: &Card) -> std::ops::Range<usize> {
     match card.id {
         "rate_delay" | "stream_offset" => TAU.start..TAU.start + 3,
+        "yaw_delay" => TAU.start + 2..TAU.start + 3,
         "thrust_delay" => TAU.start + 3..TAU.end,
         _ => 0..0,
     }
@@ -339,14 +421,14 @@ fn try_best(
     problem: &Problem,
     whitener: &Whitener,
     point: &Point,
-    found: &[(Direction, Values, Values)],
+    found: &[Column],
     order: &[(usize, f64, f64)],
 ) -> Vec<Trial> {
     let mut chosen: Vec<usize> = Vec::new();
     for &(j, gain, evidence) in order {
-        let card = found[j].0.card;
-        let known = chosen.iter().any(|&i| found[i].0.card.id == card.id);
-        let leader = chosen.first().map(|&i| found[i].0.card);
+        let card = found[j].card();
+        let known = chosen.iter().any(|&i| found[i].card().id == card.id);
+        let leader = chosen.first().map(|&i| found[i].card());
         let rival = leader.is_some_and(|l| rivals(l, card));
         if !known
             && gain > 0.5 * GAIN
@@ -372,7 +454,7 @@ fn try_best(
         x
     };
     let one = |&j: &usize| {
-        let Direction { card, start } = &found[j].0;
+        let Direction { card, start } = &found[j].direction;
         let mut best = refitted(card, start, 1.0);
         if best.total() > before {
             // Too far away: from a size too small to matter, downhill.
@@ -380,10 +462,11 @@ fn try_best(
         }
         if card.parameters[0].unit == "s" {
             // Late signals fit at more than one delay.
-            let others = found.iter().enumerate().filter(|(i, (d, ..))| *i != j && d.card.id == card.id);
-            let others = others.map(|(_, (other, ..))| refitted(card, &other.start, 1.0));
-            let beside = found.iter().filter(|(d, ..)| d.card.id == card.id && !delayed(card).is_empty());
-            let beside = beside.map(|(d, ..)| from(&shortened(card, d.start[0].1), card, &d.start, 1.0));
+            let others = found.iter().enumerate().filter(|(i, c)| *i != j && c.card().id == card.id);
+            let others = others.map(|(_, other)| refitted(card, &other.direction.start, 1.0));
+            let beside =
+                found.iter().map(|c| &c.direction).filter(|d| d.card.id == card.id && !delayed(card).is_empty());
+            let beside = beside.map(|d| from(&shortened(card, d.start[0].1), card, &d.start, 1.0));
             for another in others.chain(beside) {
                 if another.total() < best.total() {
                     best = another;

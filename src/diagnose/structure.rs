@@ -68,10 +68,14 @@ pub fn fold(block: u32) -> u32 {
 pub fn search(problem: &Problem, state: &State, residual: &Values) -> Vec<Structure> {
     let channels: Vec<usize> = (RATE..FORCE + 3).chain([VOLTAGE]).filter(|&c| residual[c].len() > 200).collect();
     let mut found: Vec<Structure> = channels.into_par_iter().map(|c| one(problem, state, c, &residual[c])).collect();
+    let mut belongs = |c: usize, share: f64, along: &'static str| {
+        found.iter_mut().filter(|s| s.channel == NAMES[c].0).for_each(|s| s.belongs(share, along));
+    };
     if let Some(share) = super::place::share(problem, residual) {
-        for structure in found.iter_mut().filter(|s| s.channel == NAMES[FORCE].0 || s.channel == NAMES[FORCE + 1].0) {
-            structure.placed(share);
-        }
+        [FORCE, FORCE + 1].into_iter().for_each(|c| belongs(c, share, PLACE));
+    }
+    for swing in super::ringing::find(problem, residual) {
+        belongs(FORCE + swing.axis, swing.share, swing.name);
     }
     found
 }
@@ -80,11 +84,11 @@ pub fn search(problem: &Problem, state: &State, residual: &Values) -> Vec<Struct
 pub const PLACE: &str = "place";
 
 impl Structure {
-    /// So much of the horizontal residual's power belongs to places.
-    fn placed(&mut self, share: f64) {
+    /// So much of the residual's power belongs to what no signal of the moment tells.
+    fn belongs(&mut self, share: f64, along: &'static str) {
         self.structure_rms = self.structure_rms.max(share.sqrt() * self.rms);
         if share > self.along_share {
-            (self.along, self.along_share, self.curve) = (Some(PLACE), share, Vec::new());
+            (self.along, self.along_share, self.curve) = (Some(along), share, Vec::new());
         }
     }
 }

@@ -87,11 +87,6 @@ impl Whitener {
         &mut self.weight
     }
 
-    /// Whitened squares that noise alone would leave.
-    pub fn expected(&self) -> f64 {
-        self.weight.iter().flatten().map(|w| w * w).sum()
-    }
-
     /// Standard deviation of a channel's noise from sample to sample, in its unit.
     pub fn sd(&self, c: usize) -> f64 {
         1.0 / self.filter[c].1

@@ -9,6 +9,8 @@ use crate::vehicle::Vehicle;
 
 /// Commands kept: a delay may be this many control periods less one.
 pub const LINE: usize = 14;
+/// Latest that a command arrives, s.
+const LATEST_S: f64 = 0.12;
 /// Steps are divided until each is at most this long, s.
 const FINE_S: f64 = 0.0021;
 /// Period of the commands, s.
@@ -122,12 +124,14 @@ pub fn throttle<R: Real>(command: R) -> R {
     command.mul_add(R::of(0.5), R::of(0.5))
 }
 
-/// When commands arrive.
+/// How late the commands of roll, pitch, yaw and thrust arrive, s.
 #[inline(always)]
-pub fn lateness<R: Real>(p: &Parameters<R>) -> Late<R> {
-    let mut late = Late { rates: R::zero(), thrust: R::zero() };
+pub fn lateness<R: Real>(p: &Parameters<R>) -> [R; 4] {
+    let mut late = Late { rates: R::zero(), yaw: R::zero(), thrust: R::zero() };
     effects::late(&p.beyond.values, &mut late);
-    late
+    // No command comes before it was sent, or later than the line is long.
+    let yaw = (late.rates + late.yaw).clamp(R::zero(), R::of(LATEST_S));
+    [late.rates, late.rates, yaw, late.thrust]
 }
 
 /// The filtered commands and their slope `h` seconds later, while the commands that arrive are `sent`, at terminal `voltage`.
@@ -303,7 +307,7 @@ fn stepped<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R>
     for _ in 0..p.beyond.parts {
         s.memory.phase = s.memory.phase + h;
         let end = s.memory.phase;
-        let sent = build!(|k| arriving(&s.memory.line, k, if k < 3 { late.rates } else { late.thrust }, end, h));
+        let sent = build!(|k| arriving(&s.memory.line, k, late[k], end, h));
         s = part(&s, p, sent, h);
     }
     s

@@ -20,7 +20,7 @@ impl Effect for It {
         channels: &[Channel::Force],
         signature: "vertical specific force grows with thrust over height squared below half a metre",
         rivals: &[],
-        manoeuvre: ("low passes and landings", &["forward", "descent", "climb"]),
+        manoeuvre: ("hovering a hand above the ground, and landings", &["low-hover"]),
         shown: None,
     };
 

@@ -14,7 +14,7 @@ impl Effect for It {
         parameters: &[Parameter { name: "delay", unit: "s", low: 0.0, high: 0.12, typical: [0.002, 0.05] }],
         channels: &[Channel::Rate],
         signature: "the gyro lags the simulated rate by the same time at every frequency",
-        rivals: &["rate_second_order", "stream_offset", "command_dropout", "rate_slew_limit"],
+        rivals: &["rate_second_order", "stream_offset", "command_dropout", "rate_slew_limit", "yaw_delay"],
         manoeuvre: ("sharp steps and fast stick doublets on every axis", &["rate-steps", "roll-doublets", "pitch-doublets", "yaw-doublets"]),
         shown: None,
     };

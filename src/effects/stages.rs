@@ -4,6 +4,8 @@
 #[derive(Clone, Copy, Debug)]
 pub struct Late<R> {
     pub rates: R,
+    /// Of yaw, beyond that of all rates.
+    pub yaw: R,
     pub thrust: R,
 }
 

@@ -15,7 +15,7 @@ impl Effect for It {
         channels: &[Channel::Rate],
         signature: "the yaw rate falls short only where throttle and yaw command are both large",
         rivals: &[],
-        manoeuvre: ("yaw steps at full throttle", &["yaw-steps", "punch", "yaw-spin"]),
+        manoeuvre: ("yaw steps at full throttle", &["punch-turns"]),
         shown: None,
     };
 

@@ -7,7 +7,7 @@ use super::view::View;
 pub const GRAVITY: f64 = 9.81;
 /// Farthest from the origin along x and y, m.
 pub const REACH_M: f64 = 100.0;
-/// Lowest and highest over the origin between take-off and landing, m.
+/// Lowest and highest over the origin between take-off and landing, but for what is flown low on purpose, m.
 pub const HEIGHT_M: [f64; 2] = [8.0, 80.0];
 
 /// Margins inside the box at which a manoeuvre is broken off, m.

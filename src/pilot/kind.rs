@@ -26,11 +26,13 @@ pub enum Kind {
     Descent,
     Dive,
     Circle,
+    PunchTurns,
+    LowHover,
 }
 
 impl Kind {
     /// All kinds in order of declaration.
-    pub const ALL: [Kind; 23] = [
+    pub const ALL: [Kind; 25] = [
         Kind::RollSteps,
         Kind::PitchSteps,
         Kind::YawSteps,
@@ -54,6 +56,8 @@ impl Kind {
         Kind::Descent,
         Kind::Dive,
         Kind::Circle,
+        Kind::PunchTurns,
+        Kind::LowHover,
     ];
 
     /// Its name, such as `roll-doublets`.
@@ -82,6 +86,8 @@ impl Kind {
             Kind::Descent => "descent",
             Kind::Dive => "dive",
             Kind::Circle => "circle",
+            Kind::PunchTurns => "punch-turns",
+            Kind::LowHover => "low-hover",
         }
     }
 
@@ -106,6 +112,7 @@ impl Kind {
                 | Kind::Left
                 | Kind::Climb
                 | Kind::Dive
+                | Kind::PunchTurns
         )
     }
 }

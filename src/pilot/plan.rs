@@ -3,7 +3,7 @@
 use super::Limits;
 use super::cascade::Demand;
 use super::kind::Kind;
-use super::script::{Course, Flip, Now, RateSteps, Script, Segment, Sequenced, ThrottleSteps};
+use super::script::{Course, Flip, LowHover, Now, PunchTurns, RateSteps, Script, Segment, Sequenced, ThrottleSteps};
 use super::view::{View, wrapped};
 use crate::rng::Sequence;
 use nalgebra::{Vector2, Vector3};
@@ -14,6 +14,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 pub struct Plan {
     station: Vector3<f64>,
     heading: Option<f64>,
+    /// Whether it leads below the floor of the box.
+    pub low: bool,
     pub script: Box<dyn Script>,
 }
 
@@ -21,6 +23,8 @@ pub struct Plan {
 const APPROACH_S: f64 = 7.0;
 /// Manoeuvres over the spot begin at most so far from the origin, m.
 const NEAR_M: f64 = 50.0;
+/// Height at which what is flown close to the ground begins, m.
+const LOW_M: f64 = 10.0;
 /// Highest speed asked for over ground, m/s.
 const FASTEST: f64 = 20.0;
 
@@ -55,6 +59,14 @@ impl Plan {
             Kind::Punch => {
                 let seconds = rng.uniform([0.3, 1.0]);
                 over_spot(view, rng.uniform([16.0, 26.0]), throttle(&[(seconds, 1.0, 1.0), (0.3, -1.0, -1.0)]))
+            }
+            Kind::PunchTurns => {
+                let script = PunchTurns::new(sign * size(0.6), rng.uniform([0.15, 0.3]));
+                over_spot(view, rng.uniform([16.0, 24.0]), Box::new(script))
+            }
+            Kind::LowHover => {
+                let script = LowHover::new(rng.uniform([0.2, 0.35]));
+                Plan { low: true, ..over_spot(view, LOW_M, Box::new(script)) }
             }
             Kind::Chop => {
                 let seconds = rng.uniform([0.5, 1.6]);
@@ -118,7 +130,7 @@ impl Plan {
 
 fn over_spot(view: &View, height: f64, script: Box<dyn Script>) -> Plan {
     let spot = view.position.xy().cap_magnitude(NEAR_M);
-    Plan { station: Vector3::new(spot.x, spot.y, height), heading: None, script }
+    Plan { station: Vector3::new(spot.x, spot.y, height), heading: None, low: false, script }
 }
 
 fn throttle(segments: &[(f64, f64, f64)]) -> Box<dyn Script> {
@@ -134,7 +146,7 @@ fn across(view: &View, height: f64, nose: f64, rng: &mut Sequence, course: Cours
     let travel = (-away.y).atan2(-away.x);
     let heading = travel - nose;
     let script = Box::new(course.along(travel, heading));
-    Plan { station: Vector3::new(spot.x, spot.y, height), heading: Some(heading), script }
+    Plan { station: Vector3::new(spot.x, spot.y, height), heading: Some(heading), low: false, script }
 }
 
 fn on_circle(angle: f64) -> Vector2<f64> {

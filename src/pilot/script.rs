@@ -1,6 +1,7 @@
 //! What a manoeuvre does from moment to moment.
 
 mod course;
+mod low;
 mod rates;
 mod sequenced;
 mod throttle;
@@ -10,10 +11,11 @@ use super::cascade::Demand;
 use super::view::View;
 use crate::rng::Sequence;
 pub use course::Course;
+pub use low::LowHover;
 pub use rates::{Flip, RateSteps};
 pub use sequenced::{Segment, Sequenced};
 use std::fmt::Debug;
-pub use throttle::ThrottleSteps;
+pub use throttle::{PunchTurns, ThrottleSteps};
 
 /// A moment of a manoeuvre.
 pub struct Now<'a> {

@@ -1,4 +1,4 @@
-//! Random thrust commands about level flight.
+//! Random thrust commands about level flight, and turns at full thrust.
 
 use super::{Now, Script};
 use crate::pilot::bounds::GRAVITY;
@@ -41,5 +41,38 @@ impl Script for ThrottleSteps {
             self.until = now.time + rng.uniform(HOLD_S).min(CHANGE / pull.max(0.1)).max(HOLD_S[0]);
         }
         Some(Demand::direct(3, self.value))
+    }
+}
+
+/// Full thrust while the nose turns to one side and back.
+#[derive(Debug)]
+pub struct PunchTurns {
+    yaw: f64,
+    half: f64,
+}
+
+/// How long full thrust and its end, an idle, last, s.
+const FULL_S: f64 = 0.9;
+const IDLE_S: f64 = 0.3;
+
+impl PunchTurns {
+    /// Yaw command to the first side, -1..1, and how long each side is held, s.
+    pub fn new(yaw: f64, half: f64) -> Self {
+        PunchTurns { yaw, half }
+    }
+}
+
+impl Script for PunchTurns {
+    fn demand(&mut self, now: &Now, _: &mut Sequence) -> Option<Demand> {
+        if now.time > FULL_S + IDLE_S {
+            return None;
+        }
+        if now.time > FULL_S {
+            return Some(Demand::direct(3, -1.0));
+        }
+        let side = if ((now.time / self.half) as usize).is_multiple_of(2) { 1.0 } else { -1.0 };
+        let mut demand = Demand::direct(3, 1.0);
+        demand.direct[2] = Some(side * self.yaw);
+        Some(demand)
     }
 }

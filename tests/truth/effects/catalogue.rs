@@ -31,8 +31,9 @@ const fn entry_of(
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
-pub const CATALOGUE: [Entry; 41] = [
+pub const CATALOGUE: [Entry; 42] = [
     entry_of("rate_delay", "delay", "s", 0.002, 0.05, false),
+    entry_of("yaw_delay", "extra", "s", 0.004, 0.03, false),
     entry_of("thrust_delay", "delay", "s", 0.002, 0.03, false),
     entry_of("rate_second_order", "wn", "rad/s", 60.0, 150.0, false),
     entry_of("rate_slew_limit", "limit", "rad/s2", 100.0, 600.0, false),

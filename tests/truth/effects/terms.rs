@@ -39,6 +39,8 @@ pub struct Swing {
 #[derive(Clone, Debug, Default)]
 pub struct Terms {
     pub rate_delay: f64,
+    /// Of yaw alone, on top.
+    pub yaw_delay: f64,
     pub thrust_delay: f64,
     pub dropout: f64,
     /// Mean of the exponential part of the delay, s.
@@ -127,6 +129,7 @@ impl Terms {
         let vector = |names: [&'static str; 3]| Vector3::from(names.map(get));
         match h.id.as_str() {
             "rate_delay" => self.rate_delay = get("delay"),
+            "yaw_delay" => self.yaw_delay = get("extra"),
             "thrust_delay" => self.thrust_delay = get("delay"),
             "rate_second_order" => self.second_order = Some([get("wn"), get("zeta")]),
             "rate_slew_limit" => self.slew = Some(get("limit")),

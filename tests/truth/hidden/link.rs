@@ -12,9 +12,12 @@ const MEMORY_S: f64 = 0.05;
 /// Commands and when they arrive.
 #[derive(Debug)]
 pub struct Link {
-    rates: VecDeque<(f64, [f64; 3])>,
+    /// Roll and pitch.
+    rates: VecDeque<(f64, [f64; 2])>,
+    yaw: VecDeque<(f64, f64)>,
     thrust: VecDeque<(f64, f64)>,
-    delays: [f64; 2],
+    /// Of roll and pitch, yaw, and thrust, s.
+    delays: [f64; 3],
     jitter: f64,
     dropout: f64,
     /// Half widths of the backlash of yaw and thrust, and where their far ends stand.
@@ -26,9 +29,10 @@ pub struct Link {
 impl Link {
     pub fn new(terms: &Terms, seed: u64) -> Self {
         Link {
-            rates: VecDeque::from([(f64::NEG_INFINITY, [0.0; 3])]),
+            rates: VecDeque::from([(f64::NEG_INFINITY, [0.0; 2])]),
+            yaw: VecDeque::from([(f64::NEG_INFINITY, 0.0)]),
             thrust: VecDeque::from([(f64::NEG_INFINITY, -1.0)]),
-            delays: [terms.rate_delay, terms.thrust_delay],
+            delays: [terms.rate_delay, terms.rate_delay + terms.yaw_delay, terms.thrust_delay],
             jitter: terms.jitter,
             dropout: terms.dropout,
             play: [terms.yaw_play, terms.throttle_play],
@@ -52,13 +56,17 @@ impl Link {
         let [yaw, thrust] = self.stands;
         // No command overtakes the one before.
         let arrives = (time + self.delays[0] + late).max(self.rates.back().map_or(time, |last| last.0));
-        self.rates.push_back((arrives, [roll, pitch, yaw]));
-        self.thrust.push_back((time + self.delays[1], thrust));
+        self.rates.push_back((arrives, [roll, pitch]));
+        self.yaw.push_back((arrives + self.delays[1] - self.delays[0], yaw));
+        self.thrust.push_back((time + self.delays[2], thrust));
     }
 
     fn forget(&mut self, before: f64) {
         while self.rates.get(1).is_some_and(|next| next.0 < before) {
             self.rates.pop_front();
+        }
+        while self.yaw.get(1).is_some_and(|next| next.0 < before) {
+            self.yaw.pop_front();
         }
         while self.thrust.get(1).is_some_and(|next| next.0 < before) {
             self.thrust.pop_front();
@@ -67,13 +75,14 @@ impl Link {
 
     /// The command that acts at `time`.
     pub fn at(&self, time: f64) -> [f64; 4] {
-        let [x, y, z] = latest(&self.rates, time).unwrap_or([0.0; 3]);
-        [x, y, z, latest(&self.thrust, time).unwrap_or(-1.0)]
+        let [x, y] = latest(&self.rates, time).unwrap_or([0.0; 2]);
+        [x, y, latest(&self.yaw, time).unwrap_or(0.0), latest(&self.thrust, time).unwrap_or(-1.0)]
     }
 
     /// When the next command arrives after `time` and before `end`, if one does.
     pub fn next_edge(&self, time: f64, end: f64) -> Option<f64> {
-        let edges = self.rates.iter().map(|c| c.0).chain(self.thrust.iter().map(|c| c.0));
+        let edges = self.rates.iter().map(|c| c.0).chain(self.yaw.iter().map(|c| c.0));
+        let edges = edges.chain(self.thrust.iter().map(|c| c.0));
         // Nearer than a nanosecond is the rounding of times.
         edges.filter(|edge| *edge > time + 1e-9 && *edge < end - 1e-9).min_by(f64::total_cmp)
     }
