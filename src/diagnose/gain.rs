@@ -3,7 +3,7 @@
 use super::finding::{Ahead, Gain};
 use super::fit::{self, Point};
 use super::horizon;
-use super::model::BEGIN;
+use super::model::{BEGIN, Number};
 use super::predict::CHANNELS;
 use super::problem::Problem;
 use super::select::{self, Selection};
@@ -31,12 +31,15 @@ impl HeldOut {
     /// An effect that is only suspected is not in the extended model: there it is added.
     pub fn of_one(&self, problem: &Problem, change: &[f64], held: bool) -> BTreeMap<&'static str, Gain> {
         let sign = if held { 1.0 } else { -1.0 };
-        let x: Vec<f64> = self.extended.x.iter().zip(change).map(|(x, by)| x + sign * by).collect();
+        let moved = |((x, by), n): ((&f64, &f64), &Number)| (x + sign * by).clamp(n.low, n.high);
+        let x: Vec<f64> = self.extended.x.iter().zip(change).zip(&problem.model.numbers).map(moved).collect();
         let state = problem.predict(&x);
         let residual = problem.residuals(&state);
         let other = Point { x, state, free: Vec::new(), white: Vec::new(), residual, cost: Vec::new() };
         let [without, with] = if held { [&other, &self.extended] } else { [&self.extended, &other] };
-        channels(problem, without, with, &self.out)
+        let mut all = channels(problem, without, with, &self.out);
+        all.retain(|_, gain| gain.before.is_finite() && gain.after.is_finite());
+        all
     }
 }
 

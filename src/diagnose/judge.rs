@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 /// Stretches of flight that have to agree before an effect is named.
 pub const REPLICATED: f64 = 15.0;
 /// Standard deviations that its size has to be.
-const SURE: f64 = 5.0;
+const SURE: f64 = 4.0;
 /// An effect that is rarely flown is also named where at least so many stretches show it by themselves, hold at least this share of all that the flight
 /// tells of it, and its size is so many standard deviations.
 const RARE: (f64, f64, f64) = (4.0, 0.7, 8.0);
