@@ -8,6 +8,8 @@
 // Samples, axes and channels index several arrays at once here.
 #![allow(clippy::needless_range_loop)]
 
+pub mod adequacy;
+pub mod columns;
 pub mod drift;
 pub mod extend;
 pub mod figures;
@@ -17,20 +19,25 @@ pub mod gain;
 pub mod gram;
 pub mod horizon;
 pub mod judge;
+pub mod kinematics;
 pub mod model;
 pub mod place;
 pub mod plan;
 pub mod predict;
 pub mod problem;
 pub mod random;
+pub mod rank;
 pub mod record;
+pub mod respond;
 pub mod ringing;
 pub mod select;
+pub mod settle;
 pub mod skew;
 pub mod structure;
+pub mod trial;
 pub mod whiten;
 
-use crate::effects::{self, Kind};
+use crate::effects;
 use crate::flight::quality::Quality;
 use crate::identify::data::Data;
 use crate::stats::mean;
@@ -42,28 +49,10 @@ use problem::Problem;
 use record::Record;
 use select::{Added, Selection};
 use std::collections::BTreeMap;
-use structure::{NAMES, Structure};
+use structure::NAMES;
 
 /// What the diagnosis is busy with: called before each step with its name and the share done so far.
 pub type Watch<'a> = &'a mut dyn FnMut(&str, f64);
-
-/// Period of the commands, s.
-const CONTROL_S: f64 = 0.01;
-/// Structure that nobody needs to care about, as a root mean square: rad/s, m/s2, V.
-const IDLE: [f64; 3] = [0.025, 0.08, 0.02];
-/// Structure beside the noise, and beside what the findings explain of the same channel, that is called unexplained.
-const LEFT_OF_NOISE: f64 = 0.15;
-const LEFT_OF_EXPLAINED: f64 = 0.2;
-/// Structure that lines up with a signal counts from this share of those sizes on.
-const SURER: f64 = 0.37;
-/// What a finding explains has to be so many times the structure that is left.
-const ADEQUATE: f64 = 1.5;
-/// What has a memory, where it is unexplained, may be so many times what a finding explains; measured flights are never white.
-const MEMORY: f64 = 3.0;
-/// Share of what is unexplained that goes with time from which on a finding is not the same early and late.
-const CHANGES: f64 = 0.2;
-/// Share of a channel besides its own from which on a finding is about it.
-const ABOUT: f64 = 0.05;
 
 /// Flights and their diagnosis, with all that a report needs.
 pub struct Diagnosed {
@@ -94,8 +83,8 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let usable_s = logs.iter().map(|q| crate::flight::spans::length(&q.usable)).sum();
     let problem = problem(logs, vehicle);
     let mut selection = select::select(&problem, watch);
-    settle_clocks(&problem, &mut selection);
-    let lost = settle_chance(&problem, &mut selection);
+    settle::clocks(&problem, &mut selection);
+    let lost = settle::chance(&problem, &mut selection);
     watch("judging", 0.85);
     let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
     let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
@@ -113,9 +102,9 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     }
     let (drift, cause) = drift::find(&judge);
     findings.extend(cause);
-    let unexplained = unexplained(&structure, &findings, &selection);
+    let unexplained = adequacy::unexplained(&structure, &findings, &selection);
     for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected) {
-        if let Some(why) = doubt(finding, &structure, &unexplained) {
+        if let Some(why) = adequacy::doubt(finding, &structure, &unexplained) {
             (finding.status, finding.why) = (Status::Suspected, Some(why));
         }
     }
@@ -170,101 +159,9 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     Diagnosed { diagnosis, vehicle: extended, problem, selection }
 }
 
-/// Why a finding is no more than suspected beside what is left, if so.
-fn doubt(finding: &Finding, structure: &[Structure], unexplained: &[Structure]) -> Option<String> {
-    let explained = |s: &Structure| {
-        let share = finding.explained.get(s.channel)?.min(0.999_999);
-        (share > if s.channel == finding.channel { 1e-3 } else { ABOUT })
-            .then(|| s.rms * (share / (1.0 - share)).sqrt())
-    };
-    let more = |s: &Structure| format!("more structure remains in {} than it explains", s.channel);
-    if let Some(left) = structure.iter().find(|s| s.channel == finding.channel)
-        && explained(left).is_some_and(|explained| left.structure_rms > explained / ADEQUATE)
-    {
-        return Some(more(left));
-    }
-    // What swings pulls like a drag that comes late.
-    let drag = effects::card(finding.effect).is_some_and(|card| card.kind == Kind::Drag);
-    let most = structure.iter().filter_map(explained).fold(0.0, f64::max);
-    let swing = |s: &&Structure| s.along.is_some_and(ringing::is_swing) && s.structure_rms > most / MEMORY;
-    if let Some(left) = unexplained.iter().find(swing).filter(|_| drag) {
-        return Some(format!("something swings in {}, which looks like drag too", left.channel));
-    }
-    unexplained.iter().filter_map(|s| Some((s, explained(s)?))).find_map(|(left, explained)| {
-        if left.channel == finding.channel && left.coloured_rms > MEMORY * explained {
-            return Some(more(left));
-        }
-        let with_time = left.along.is_some_and(|along| along.ends_with("time") && left.along_share > CHANGES);
-        with_time.then(|| format!("what it explains in {} changes during the flight", left.channel))
-    })
-}
-
 /// By impact; what is only suspected comes last.
 fn rank(finding: &Finding) -> f64 {
     finding.impact + if finding.status == Status::Suspected { 0.0 } else { 1e6 }
-}
-
-/// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two of the same size.
-fn settle_clocks(problem: &Problem, selection: &mut Selection) {
-    /// Agreement of the two times, s, and as a share.
-    const SAME: [f64; 2] = [6e-4, 0.05];
-    let [Some(delay), Some(offset)] = ["rate_delay", "stream_offset"].map(effects::card) else { return };
-    let moved = mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>());
-    let [asked, stamped] = [delay, offset].map(|card| model::span(card).start);
-    let Some(i) = selection.added.iter().position(|a| a.card.id == delay.id || a.card.id == offset.id) else { return };
-    let mut x = selection.point.x.clone();
-    let late = x[asked] + x[stamped];
-    let both = selection.added.iter().filter(|a| a.card.id == delay.id || a.card.id == offset.id).count() > 1;
-    if moved == 0.0 || both || (late - moved).abs() > SAME[0] + SAME[1] * moved.abs() {
-        return;
-    }
-    (x[asked], x[stamped]) = (0.0, late);
-    let mut free = selection.point.free.clone();
-    free.retain(|k| *k != asked && *k != stamped);
-    free.push(stamped);
-    selection.added[i] = Added { card: offset, ties: Vec::new() };
-    selection.point = fit::fit(problem, &selection.whitener, &x, &free);
-}
-
-/// Lost commands and a short delay have the same mean: what single stick movements leave decides.
-fn settle_chance(problem: &Problem, selection: &mut Selection) -> Option<random::Lost> {
-    let dropout = effects::card("command_dropout")?;
-    let lost = random::lost_commands(problem, selection);
-    let are_lost = random::are_lost(&lost, dropout);
-    let at = |card: &effects::Card| model::span(card).start;
-    let mut x = selection.point.x.clone();
-    let mut free = selection.point.free.clone();
-    // A delay that lost commands account for is none.
-    let explained = |a: &Added, x: &[f64]| a.card.id == "rate_delay" && x[at(a.card)] < 3.0 * lost.share * CONTROL_S;
-    if are_lost {
-        let gone: Vec<Added> =
-            selection.added.iter().filter(|a| explained(a, &x) || a.card.id == dropout.id).cloned().collect();
-        for a in &gone {
-            model::span(a.card).for_each(|k| x[k] = 0.0);
-            free.retain(|k| !model::span(a.card).contains(k));
-            selection.added.retain(|other| other.card.id != a.card.id);
-        }
-        selection.added.push(Added { card: dropout, ties: Vec::new() });
-        // Counted, not fitted: its mean is a delay that the time constants take up.
-        x[at(dropout)] = lost.share;
-    } else if let Some(i) = selection.added.iter().position(|a| a.card.id == dropout.id) {
-        // Its mean is there, its variance is not: the rival that has the same mean.
-        let other = selection.added[i].ties.first().copied().or(effects::card("rate_delay"));
-        let other = other.filter(|o| selection.added.iter().all(|a| a.card.id != o.id));
-        let mean = std::mem::take(&mut x[at(dropout)]) * CONTROL_S;
-        free.retain(|k| *k != at(dropout));
-        selection.added.remove(i);
-        if let Some(other) = other {
-            x[at(other)] = mean;
-            free.extend(model::span(other));
-            selection.added.insert(i, Added { card: other, ties: Vec::new() });
-        }
-    } else {
-        selection.added.iter_mut().for_each(|a| a.ties.retain(|c| c.id != dropout.id));
-        return None;
-    }
-    selection.point = fit::fit(problem, &selection.whitener, &x, &free);
-    are_lost.then_some(lost)
 }
 
 /// Constant errors of the IMU, which every fit allows for.
@@ -282,29 +179,6 @@ fn biases(judge: &Judge) -> Vec<Judged> {
         }
     }
     out
-}
-
-/// Channels in which structure is left that matters, beside the noise and beside what the findings explain.
-fn unexplained(structure: &[Structure], findings: &[Finding], selection: &Selection) -> Vec<Structure> {
-    let gusts = findings.iter().any(|f| f.effect == "gusts");
-    let one = |s: &&Structure| {
-        let Some(c) = NAMES.iter().position(|(name, _)| *name == s.channel) else { return false };
-        let idle = IDLE[if c < 3 {
-            0
-        } else if c < 6 {
-            1
-        } else {
-            2
-        }];
-        let before = mean(&selection.base.residual[c].iter().map(|r| r * r).collect::<Vec<_>>());
-        let explained = (before - s.rms * s.rms).max(0.0).sqrt();
-        let gusty = gusts && (3..6).contains(&c);
-        // What lines up with a signal is surer than what only has a memory.
-        let surer = if gusty { 1.0 } else { SURER };
-        let left = (s.structure_rms / surer).max(if gusty { 0.0 } else { s.coloured_rms });
-        left > idle && left > LEFT_OF_NOISE * s.rms && left > LEFT_OF_EXPLAINED * explained
-    };
-    structure.iter().filter(one).cloned().collect()
 }
 
 fn residuals(problem: &Problem, selection: &Selection) -> BTreeMap<&'static str, Residual> {

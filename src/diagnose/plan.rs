@@ -4,7 +4,7 @@
 use super::finding::{Detectable, Hidden};
 use super::model::{cards, span};
 use super::problem::Problem;
-use super::select::{ABSORBED, Reach};
+use super::rank::{ABSORBED, Reach};
 use crate::effects::{Card, Channel, Kind};
 
 /// Standard deviations that a size has to be, to be seen.

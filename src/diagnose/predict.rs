@@ -1,9 +1,11 @@
 //! What the model says the sensors of a flight should have read: the same stages as the simulator's, driven by the log.
 
+use super::kinematics::{self, in_world, lagged, slopes, vector};
 use super::model::{BEGIN, Model, Stage};
 use super::record::Record;
+use super::respond::{Responses, respond, spin, supplied};
 use crate::dynamics::Parameters;
-use crate::dynamics::attitude::{Quaternion, body_axes, compose, dot, normalized, small_rotation};
+use crate::dynamics::attitude::{compose, dot};
 use crate::dynamics::battery::discharged;
 use crate::dynamics::extended::{self, Moment};
 use crate::effects::{self, Channel, Sensed};
@@ -46,13 +48,6 @@ pub struct Predicted {
     pub force: Arc<Vec<[f64; 3]>>,
     /// By channel, in the units of [`Record`]; empty where the log lacks it.
     pub channels: [Arc<Vec<f64>>; CHANNELS],
-}
-
-/// The filtered commands at every sample.
-struct Responses {
-    command: Vec<[f64; 4]>,
-    lag: Vec<f64>,
-    asked: Vec<([f64; 4], [f64; 3])>,
 }
 
 /// What of a prediction has to be made again.
@@ -121,7 +116,8 @@ impl Predicted {
         }
         self.sense(&p, what, model, record, x);
         if what.corrections {
-            self.integrate(model, record, x);
+            let all = kinematics::integrate(model, record, x, &self.command);
+            all.into_iter().enumerate().for_each(|(c, values)| self.channels[TURN + c] = values.into());
         }
         if stage <= Stage::Battery && what.forces {
             self.channels[VOLTAGE] = record.volts.iter().map(|(i, _)| self.modelled_v[*i]).collect::<Vec<_>>().into();
@@ -236,64 +232,6 @@ impl Predicted {
         }
         out
     }
-
-    /// What the IMU, corrected, integrates to over each window: the turn (rotation vector) and the change of velocity (less gravity), both in the
-    /// body frame at the window's beginning.
-    #[inline(always)]
-    fn integrate(&mut self, model: &Model, record: &Record, x: &[f64]) {
-        if record.windows.is_empty() {
-            return;
-        }
-        let k = model.sensors(x);
-        // A gyro that is late was not what the odometry's clock was to be moved to.
-        let late = model.of(x, "stream_offset", "offset");
-        let offset = if late == 0.0 { 0.0 } else { late - record.moved };
-        let stretch = 1.0 / (1.0 + model.of(x, "clock_skew", "skew"));
-        let tau = model.of(x, "velocity_lag", "tau");
-        let gyro = shifted(record, offset);
-        let fine = &record.fine;
-        let slope = slopes(&fine.time, &gyro);
-        let mut corrected: Vec<[f64; 6]> = Vec::with_capacity(gyro.len());
-        for i in 0..gyro.len() {
-            let throttle = extended::throttle(self.command[i / fine.every][3]);
-            let throttle = if throttle.is_finite() { throttle } else { 0.0 };
-            let force = [fine.imu[3][i], fine.imu[4][i], fine.imu[5][i]];
-            corrected.push(truth(k, [gyro[i], force], slope[i], throttle));
-        }
-        let lagged = if tau > 0.0 { Some(missing(record, &corrected, tau)) } else { None };
-        let mut out: [Vec<f64>; 6] = Default::default();
-        for &[from, to] in &record.windows {
-            let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
-            let axes = record.axes[from];
-            // Gravity was taken off the measured change for as long as the recorder's clock said, not for as long as it was.
-            let fast = (1.0 - stretch) * (record.time[to] - record.time[from]) * model.vehicle().gravity_m_s2;
-            let mut pushed: [f64; 3] = std::array::from_fn(|j| fast * axes[j][2]);
-            for i in from * fine.every..to * fine.every {
-                let h = (fine.time[i + 1] - fine.time[i]) * stretch;
-                let mean: [f64; 6] = std::array::from_fn(|j| 0.5 * (corrected[i][j] + corrected[i + 1][j]));
-                let half = small_rotation([mean[0], mean[1], mean[2]], 0.5 * h);
-                let middle = compose(turn, half);
-                turn = normalized(compose(middle, half));
-                let mut push = in_world(&body_axes(middle), [mean[3], mean[4], mean[5]]);
-                if let Some(world) = &lagged {
-                    for j in 0..3 {
-                        push[j] += (0..3).map(|c| axes[j][c] * 0.5 * (world[i][c] + world[i + 1][c])).sum::<f64>();
-                    }
-                }
-                (0..3).for_each(|j| pushed[j] += h * push[j]);
-            }
-            let rotated = vector(turn);
-            for j in 0..3 {
-                out[j].push(rotated[j]);
-                if record.moves {
-                    out[3 + j].push(pushed[j]);
-                }
-            }
-        }
-        for (c, values) in out.into_iter().enumerate() {
-            self.channels[TURN + c] = values.into();
-        }
-    }
 }
 
 /// A fused multiply-add is an instruction below a kernel, and a call of a function elsewhere.
@@ -336,189 +274,4 @@ pub fn measured(record: &Record, gravity: f64) -> [Vec<f64>; CHANNELS] {
     }
     out[VOLTAGE] = record.volts.iter().map(|(_, v)| *v).collect();
     out
-}
-
-#[inline(always)]
-fn in_world(axes: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| (0..3).map(|j| axes[j][k] * v[j]).sum())
-}
-
-/// The rotation vector of a rotation of less than half a turn, rad.
-#[inline(always)]
-fn vector(q: Quaternion<f64>) -> [f64; 3] {
-    let sign = if q[0] < 0.0 { -1.0 } else { 1.0 };
-    let axis = q[1].hypot(q[2]).hypot(q[3]);
-    let scale = if axis > 1e-12 { 2.0 * axis.atan2(sign * q[0]) * sign / axis } else { 2.0 * sign };
-    [q[1] * scale, q[2] * scale, q[3] * scale]
-}
-
-/// The truth behind a reading of rates and specific force: what the sensors make of it is small, so that two rounds of correction are enough.
-#[inline(always)]
-fn truth(k: &[f64], measured: [[f64; 3]; 2], acceleration: [f64; 3], throttle: f64) -> [f64; 6] {
-    let [mut rates, mut force] = measured;
-    for _ in 0..2 {
-        let mut sensed = Sensed { rates, acceleration, force, throttle };
-        effects::sense(k, &mut sensed);
-        rates = std::array::from_fn(|j| rates[j] + measured[0][j] - sensed.rates[j]);
-        force = std::array::from_fn(|j| force[j] + measured[1][j] - sensed.force[j]);
-    }
-    [rates[0], rates[1], rates[2], force[0], force[1], force[2]]
-}
-
-/// The measured rates as they were when their late samples say they are.
-#[inline(always)]
-fn shifted(record: &Record, offset: f64) -> Vec<[f64; 3]> {
-    let n = record.fine.time.len();
-    if offset == 0.0 {
-        return (0..n).map(|i| std::array::from_fn(|k| record.fine.imu[k][i])).collect();
-    }
-    let at = |t: f64, k: usize, near: usize| {
-        let mut i = near.min(n - 2);
-        while i > 0 && record.fine.time[i] > t {
-            i -= 1;
-        }
-        while i + 2 < n && record.fine.time[i + 1] < t {
-            i += 1;
-        }
-        let share = ((t - record.fine.time[i]) / (record.fine.time[i + 1] - record.fine.time[i])).clamp(0.0, 1.0);
-        record.fine.imu[k][i] + share * (record.fine.imu[k][i + 1] - record.fine.imu[k][i])
-    };
-    (0..n).map(|i| std::array::from_fn(|k| at(record.fine.time[i] + offset, k, i))).collect()
-}
-
-/// Specific forces `force` of the IMU's samples, turned into the world and through a first-order lag of `tau` seconds; straight lines between samples.
-#[inline(always)]
-fn lagged(record: &Record, tau: f64, force: impl Fn(usize) -> [f64; 3]) -> Vec<[f64; 3]> {
-    let fine = &record.fine;
-    let mut now: Option<[[f64; 3]; 2]> = None;
-    let mut out = Vec::with_capacity(fine.time.len());
-    for i in 0..fine.time.len() {
-        let world = in_world(&fine_axes(record, i), force(i));
-        let finite = world[0].is_finite() && world[1].is_finite() && world[2].is_finite();
-        let next = match now {
-            Some([late, _]) if !finite => late,
-            Some([late, before]) => {
-                let h = fine.time[i] - fine.time[i - 1];
-                let alpha = crate::dynamics::response::alpha(tau, h);
-                build!(|k| {
-                    let rising = (world[k] - before[k]) * tau / h.max(1e-9);
-                    world[k] - rising * alpha + (late[k] - before[k]) * (1.0 - alpha)
-                })
-            }
-            None => world,
-        };
-        if finite {
-            now = Some([next, world]);
-        }
-        out.push(if next[0].is_finite() { next } else { [0.0; 3] });
-    }
-    out
-}
-
-/// What such a lag adds to the corrected specific forces.
-#[inline(always)]
-fn missing(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
-    let force = |i: usize| -> [f64; 3] { build!(|k| corrected[i][3 + k]) };
-    let late = lagged(record, tau, force);
-    let added = |i: usize| {
-        let world = in_world(&fine_axes(record, i), force(i));
-        let added: [f64; 3] = build!(|k| late[i][k] - world[k]);
-        if added[0].is_finite() { added } else { [0.0; 3] }
-    };
-    (0..late.len()).map(added).collect()
-}
-
-/// The body's axes in the world at a sample of the whole IMU, between those at the record's.
-#[inline(always)]
-fn fine_axes(record: &Record, i: usize) -> [[f64; 3]; 3] {
-    let at = i / record.fine.every;
-    let share = (i % record.fine.every) as f64 / record.fine.every as f64;
-    let (a, b) = (&record.axes[at], &record.axes[(at + 1).min(record.axes.len() - 1)]);
-    build!(|j| build!(|k| a[j][k] + share * (b[j][k] - a[j][k])))
-}
-
-/// Change of each rate, by central differences.
-#[inline(always)]
-fn slopes(time: &[f64], rates: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    let n = time.len();
-    let one = |i: usize| {
-        let (a, b) = (i.saturating_sub(1), (i + 1).min(n - 1));
-        let h = (time[b] - time[a]).max(1e-6);
-        std::array::from_fn(|k| (rates[b][k] - rates[a][k]) / h)
-    };
-    (0..n).map(one).collect()
-}
-
-#[inline(always)]
-fn spin(p: &Parameters<f64>, record: &Record, command: &[[f64; 4]]) -> Vec<[f64; 3]> {
-    if record.commanded[0] {
-        command.iter().map(|c| extended::spin(p, *c)).collect()
-    } else {
-        (0..command.len()).map(|i| std::array::from_fn(|k| record.imu[k][i])).collect()
-    }
-}
-
-/// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next, and what arrives is integrated exactly.
-#[inline(always)]
-fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offset: f64) -> Responses {
-    let late = extended::lateness(p);
-    // Roll and pitch, yaw, and thrust arrive each at their time.
-    let late = [late[0] + offset, late[2] + offset, late[3]];
-    let stretch = 1.0 / (1.0 + model.of(x, "clock_skew", "skew"));
-    let lost = model.of(x, "command_dropout", "probability");
-    let n = record.time.len();
-    let mut out =
-        Responses { command: Vec::with_capacity(n), lag: Vec::with_capacity(n), asked: Vec::with_capacity(n) };
-    let none = [f64::NAN; 4];
-    let Some((first, begin)) = record.sent.first().copied() else {
-        return Responses { command: vec![none; n], lag: vec![0.0; n], asked: vec![(none, [0.0; 3]); n] };
-    };
-    // What arrives on average where commands get lost.
-    let arrives = |i: usize, k: usize| {
-        let now = record.sent[i].1[k];
-        if i == 0 || lost == 0.0 { now } else { now + lost * (record.sent[i - 1].1[k] - now) }
-    };
-    let mut at = [0, 0, 0];
-    let (mut command, mut slope, mut sent) = (begin, [0.0; 3], begin);
-    let mut now = first;
-    for i in 0..n {
-        let t = record.time[i] * stretch;
-        if t < first {
-            out.command.push(none);
-            out.lag.push(f64::NAN);
-            out.asked.push((none, [0.0; 3]));
-            continue;
-        }
-        let voltage = supplied(p, record, i);
-        loop {
-            let due = |g: usize| record.sent.get(at[g] + 1).map_or(f64::INFINITY, |next| next.0 + late[g]);
-            let (g, next) = if due(0) <= due(1).min(due(2)) {
-                (0, due(0))
-            } else if due(1) <= due(2) {
-                (1, due(1))
-            } else {
-                (2, due(2))
-            };
-            let until = next.min(t);
-            if until > now {
-                (command, slope) = extended::respond(p, command, slope, sent, voltage, until - now);
-                now = until;
-            }
-            if next > t {
-                break;
-            }
-            at[g] += 1;
-            [0..2, 2..3, 3..4][g].clone().for_each(|k| sent[k] = arrives(at[g], k));
-        }
-        out.command.push(command);
-        out.lag.push((0..3).map(|k| (sent[k] - command[k]).abs()).sum());
-        out.asked.push((sent, slope));
-    }
-    out
-}
-
-/// The voltage that a sample's response depends on, V.
-#[inline(always)]
-fn supplied(p: &Parameters<f64>, record: &Record, i: usize) -> f64 {
-    if record.voltage[i].is_finite() { record.voltage[i] } else { p.beyond.full_v }
 }
