@@ -104,7 +104,8 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     findings.extend(cause);
     let unexplained = adequacy::unexplained(&structure, &findings, &selection);
     for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected) {
-        if let Some(why) = adequacy::doubt(finding, &structure, &unexplained) {
+        let bounded = judged.iter().any(|j| j.bounded && j.finding.effect == finding.effect);
+        if let Some(why) = adequacy::doubt(finding, bounded, &structure, &unexplained) {
             (finding.status, finding.why) = (Status::Suspected, Some(why));
         }
     }

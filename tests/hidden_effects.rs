@@ -61,6 +61,11 @@ fn delays_are_found() {
 }
 
 #[test]
+fn yaw_has_a_delay_of_its_own() {
+    finds(49, &[("rate_delay", 0.03), ("yaw_delay", -0.015)], 0.05);
+}
+
+#[test]
 fn the_battery_is_found() {
     finds(43, &[("voltage_sag", 1.5)], 0.05);
 }

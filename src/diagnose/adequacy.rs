@@ -47,7 +47,7 @@ pub fn unexplained(structure: &[Structure], findings: &[Finding], selection: &Se
 }
 
 /// Why a finding is no more than suspected beside what is left, if so.
-pub fn doubt(finding: &Finding, structure: &[Structure], unexplained: &[Structure]) -> Option<String> {
+pub fn doubt(finding: &Finding, bounded: bool, structure: &[Structure], unexplained: &[Structure]) -> Option<String> {
     let explained = |s: &Structure| {
         let share = finding.explained.get(s.channel)?.min(0.999_999);
         (share > if s.channel == finding.channel { 1e-3 } else { ABOUT })
@@ -58,6 +58,9 @@ pub fn doubt(finding: &Finding, structure: &[Structure], unexplained: &[Structur
         && explained(left).is_some_and(|explained| left.structure_rms > explained / ADEQUATE)
     {
         return Some(more(left));
+    }
+    if bounded && unexplained.iter().any(|s| s.channel == finding.channel) {
+        return Some("its size ends at the bound of what it can be, and structure remains".into());
     }
     // What swings pulls like a drag that comes late.
     let drag = effects::card(finding.effect).is_some_and(|card| card.kind == Kind::Drag);

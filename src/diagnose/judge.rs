@@ -20,7 +20,7 @@ pub const REPLICATED: f64 = 15.0;
 const SURE: f64 = 4.0;
 /// An effect that is rarely flown is also named where at least so many stretches show it by themselves, hold at least this share of all that the flight
 /// tells of it, and its size is so many standard deviations.
-const RARE: (f64, f64, f64) = (4.0, 0.7, 8.0);
+const RARE: (f64, f64, f64) = (4.0, 0.7, 6.0);
 /// 97.5 % quantile of the normal distribution.
 const Z: f64 = 1.96;
 /// Gravity, for turning angles into velocities, m/s2.
@@ -55,6 +55,8 @@ impl Replicated {
 pub struct Judged {
     pub finding: Finding,
     pub material: bool,
+    /// Whether a number of it ends at the bound of its range.
+    pub bounded: bool,
     /// How the fitted numbers move where the effect is left out.
     pub change: Vec<f64>,
 }
@@ -225,7 +227,7 @@ impl<'a> Judge<'a> {
             why,
         };
         let change = x.iter().zip(&self.point().x).map(|(without, with)| without - with).collect();
-        Judged { finding, material, change }
+        Judged { finding, material, bounded: is_bounded(self.problem, card, &self.point().x), change }
     }
 
     /// The effect's parameters as people read them, with intervals.
@@ -299,6 +301,15 @@ impl<'a> Judge<'a> {
         let apart = distances.fold(0.0, f64::max);
         if apart > 0.0 { apart } else { sensors }
     }
+}
+
+/// Whether a number of an effect ends at the bound of its range: then it stands in for something else.
+pub fn is_bounded(problem: &Problem, card: &Card, x: &[f64]) -> bool {
+    let at_end = |k: usize| {
+        let n = &problem.model.numbers[k];
+        x[k] != 0.0 && (x[k] <= n.low || x[k] >= n.high)
+    };
+    span(card).any(at_end)
 }
 
 /// Whether the size of an effect is one that anybody would notice: half the smallest of its typical ones.

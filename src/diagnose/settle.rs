@@ -14,6 +14,8 @@ const CONTROL_S: f64 = 0.01;
 pub fn clocks(problem: &Problem, selection: &mut Selection) {
     /// Agreement of the two times, s, and as a share.
     const SAME: [f64; 2] = [6e-4, 0.05];
+    /// And of a lag of the velocity that comes from it.
+    const LAG: f64 = 0.5;
     let [Some(delay), Some(offset)] = ["rate_delay", "stream_offset"].map(effects::card) else { return };
     let moved = mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>());
     let [asked, stamped] = [delay, offset].map(|card| model::span(card).start);
@@ -29,6 +31,8 @@ pub fn clocks(problem: &Problem, selection: &mut Selection) {
     free.retain(|k| *k != asked && *k != stamped);
     free.push(stamped);
     selection.added[i] = Added { card: offset, ties: Vec::new() };
+    // The odometry was moved to a gyro that was late itself: its velocity seems late by as much, and is none.
+    selection.added.retain(|a| a.card.id != "velocity_lag" || (x[model::span(a.card).start] / moved - 1.0).abs() > LAG);
     selection.point = fit::fit(problem, &selection.whitener, &x, &free);
 }
 

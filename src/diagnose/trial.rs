@@ -2,6 +2,7 @@
 
 use super::columns::{Column, Direction};
 use super::fit::{self, Point};
+use super::judge::is_bounded;
 use super::model::{TAU, span};
 use super::problem::Problem;
 use super::select::{EVIDENCE, GAIN};
@@ -31,11 +32,7 @@ impl Trial {
     }
 
     pub fn bounded(&self, problem: &Problem) -> bool {
-        let at_end = |k: usize| {
-            let (n, x) = (&problem.model.numbers[k], self.point.x[k]);
-            x != 0.0 && (x <= n.low || x >= n.high)
-        };
-        span(self.card).any(at_end)
+        is_bounded(problem, self.card, &self.point.x)
     }
 }
 
