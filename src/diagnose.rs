@@ -103,9 +103,10 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let (drift, cause) = drift::find(&judge);
     findings.extend(cause);
     let unexplained = adequacy::unexplained(&structure, &findings, &selection);
+    let all = findings.clone();
     for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected) {
         let bounded = judged.iter().any(|j| j.bounded && j.finding.effect == finding.effect);
-        if let Some(why) = adequacy::doubt(finding, bounded, &structure, &unexplained) {
+        if let Some(why) = adequacy::doubt(finding, bounded, &all, &structure, &unexplained) {
             (finding.status, finding.why) = (Status::Suspected, Some(why));
         }
     }

@@ -20,6 +20,8 @@ const ADEQUATE: f64 = 1.5;
 const MEMORY: f64 = 3.0;
 /// Share of what is unexplained that goes with time from which on a finding is not the same early and late.
 const CHANGES: f64 = 0.2;
+/// What explains less than this share of what the largest finding of its channel does is small beside it.
+const BESIDE: f64 = 0.05;
 /// Share of a channel besides its own from which on a finding is about it.
 const ABOUT: f64 = 0.05;
 
@@ -47,7 +49,13 @@ pub fn unexplained(structure: &[Structure], findings: &[Finding], selection: &Se
 }
 
 /// Why a finding is no more than suspected beside what is left, if so.
-pub fn doubt(finding: &Finding, bounded: bool, structure: &[Structure], unexplained: &[Structure]) -> Option<String> {
+pub fn doubt(
+    finding: &Finding,
+    bounded: bool,
+    findings: &[Finding],
+    structure: &[Structure],
+    unexplained: &[Structure],
+) -> Option<String> {
     let explained = |s: &Structure| {
         let share = finding.explained.get(s.channel)?.min(0.999_999);
         (share > if s.channel == finding.channel { 1e-3 } else { ABOUT })
@@ -61,6 +69,14 @@ pub fn doubt(finding: &Finding, bounded: bool, structure: &[Structure], unexplai
     }
     if bounded && unexplained.iter().any(|s| s.channel == finding.channel) {
         return Some("its size ends at the bound of what it can be, and structure remains".into());
+    }
+    // Where the largest cause has not quite the right form, small ones make up for it.
+    let odds = |f: &Finding| f.explained.get(finding.channel).map_or(0.0, |s| s / (1.0 - s.min(0.999_999)));
+    let largest = findings.iter().max_by(|a, b| odds(a).total_cmp(&odds(b)));
+    if let Some(largest) = largest.filter(|l| odds(finding) < BESIDE * odds(l))
+        && unexplained.iter().any(|s| s.channel == finding.channel)
+    {
+        return Some(format!("small beside {}, where structure remains: it may make up for its form", largest.name));
     }
     // What swings pulls like a drag that comes late.
     let drag = effects::card(finding.effect).is_some_and(|card| card.kind == Kind::Drag);
