@@ -168,6 +168,17 @@ fn the_pilot_covers_what_identification_needs() {
     }
 }
 
+/// A flight without a low hover keeps above the floor.
+#[test]
+fn a_short_flight_of_the_pilot_keeps_the_floor() {
+    for seed in 0..3 {
+        let log = truth::fly(&Vehicle::draw(seed), seed, 190.0, 0.0);
+        let rows = log.odometry.time_s.iter().zip(&log.odometry.rows).filter(|(t, _)| (8.0..172.0).contains(*t));
+        let [low, _] = range(rows.map(|(_, row)| row[2]));
+        assert!(low > HEIGHT_M[0], "{seed}: down to {low} m");
+    }
+}
+
 /// Weak and strong, slippery and draggy vehicles stay in the box as well.
 #[test]
 fn the_pilot_stays_in_the_box_with_extremes() {

@@ -73,14 +73,13 @@ pub fn directions(card: &'static Card) -> Vec<Direction> {
 }
 
 /// Candidates: effects whose mean can be seen, that the base does not already hold.
-pub fn candidates(problem: &Problem, held: &[&'static Card]) -> Vec<&'static Card> {
+pub fn candidates(problem: &Problem) -> Vec<&'static Card> {
     let in_base = |card: &Card| span(card).any(|k| problem.model.base[k] != 0.0);
     let bias = |card: &Card| matches!(card.id, "gyro_bias" | "accel_bias");
     let one_clock = problem.records.iter().all(|r| r.one_clock);
     cards()
         .filter(|card| !(one_clock && card.id == "clock_skew"))
         .filter(|card| card.id != "gusts" && !bias(card) && !in_base(card))
-        .filter(|card| held.iter().all(|h| h.id != card.id))
         .collect()
 }
 

@@ -84,7 +84,7 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
         watch("weighing causes", 0.2 + 0.6 * round as f64 / MOST as f64);
         let held: Vec<&'static Card> = added.iter().map(|a| a.card).collect();
         found = if round == 0 {
-            columns(problem, &whitener, &point, &candidates(problem, &held))
+            columns(problem, &whitener, &point, &candidates(problem))
         } else {
             renewed(problem, &whitener, &point, &held, &pending, found)
         };

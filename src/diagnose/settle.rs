@@ -5,11 +5,10 @@ use super::model;
 use super::problem::Problem;
 use super::random;
 use super::select::{Added, Selection};
+use crate::dynamics::extended::CONTROL_S;
 use crate::effects;
 use crate::stats::mean;
 
-/// Period of the commands, s.
-const CONTROL_S: f64 = 0.01;
 /// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two of the same size.
 pub fn clocks(problem: &Problem, selection: &mut Selection) {
     /// Agreement of the two times, s, and as a share.

@@ -14,7 +14,7 @@ const LATEST_S: f64 = 0.12;
 /// Steps are divided until each is at most this long, s.
 const FINE_S: f64 = 0.0021;
 /// Period of the commands, s.
-const CONTROL_S: f64 = 0.01;
+pub const CONTROL_S: f64 = 0.01;
 
 /// What the extended model needs beyond [`Parameters`].
 #[derive(Clone, Copy, Debug)]
