@@ -27,7 +27,7 @@ mod truth;
 use args::Args;
 use clap::Parser;
 use program::Folder;
-use racer::snapshot::Snapshot;
+use racer::race::snapshot::Snapshot;
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 use table::Row;

@@ -1,12 +1,12 @@
 //! The stages of a training iteration, each alone on one thread: `cargo bench --bench stages`.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use racer::config::{Config, Setup};
-use racer::dynamics::{Factors, Parameters, State};
-use racer::env::{DT, Race};
-use racer::lane::Level;
-use racer::ppo::train::Training;
-use racer::sim::Batch;
+use racer::base::lane::Level;
+use racer::learn::ppo::train::Training;
+use racer::model::dynamics::{Factors, Parameters, State};
+use racer::model::sim::Batch;
+use racer::race::config::{Config, Setup};
+use racer::race::env::{DT, Race};
 
 fn setup() -> (Config, Race) {
     let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).expect("built in");

@@ -20,7 +20,7 @@ mod table;
 mod track;
 mod train;
 
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use clap::{Parser, Subcommand};
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;

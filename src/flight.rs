@@ -4,11 +4,12 @@
 
 mod blackbox;
 pub mod csv;
+pub mod fly;
 pub mod lowpass;
 pub mod mapping;
 pub mod mcap;
 mod open;
-pub mod quality;
+pub mod pilot;
 pub mod sensors;
 pub mod series;
 pub mod spans;

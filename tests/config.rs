@@ -1,6 +1,6 @@
 //! Bad configurations are refused before any work, with file, line, key and what to do.
 
-use racer::config::{Config, Setting, Setup};
+use racer::race::config::{Config, Setting, Setup};
 use std::path::PathBuf;
 use tempfile::TempDir;
 
@@ -12,7 +12,7 @@ fn file(text: &str) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-fn load(text: &str) -> Result<Config, racer::check::BadInput> {
+fn load(text: &str) -> Result<Config, racer::base::check::BadInput> {
     let (_folder, path) = file(text);
     Config::load(path.to_str().unwrap(), &[])
 }
@@ -25,7 +25,7 @@ fn refuses(text: &str, parts: &[&str]) {
     }
 }
 
-fn set(settings: &[&str]) -> Result<Config, racer::check::BadInput> {
+fn set(settings: &[&str]) -> Result<Config, racer::base::check::BadInput> {
     let settings: Result<Vec<_>, _> = settings.iter().map(|text| Setting::parse(text)).collect();
     Config::load("a2rl", &settings?)
 }

@@ -1,9 +1,9 @@
 //! The compact model against the continuous-time reference, physical laws, and itself in other precisions.
 
-use racer::dynamics::{Factors, Parameters, State, step};
-use racer::lane::{Kernel, Lane32, Level, dispatch};
-use racer::sim::Batch;
-use racer::vehicle::Vehicle;
+use racer::base::lane::{Kernel, Lane32, Level, dispatch};
+use racer::model::dynamics::{Factors, Parameters, State, step};
+use racer::model::sim::Batch;
+use racer::model::vehicle::Vehicle;
 use serde_json::Value;
 
 fn numbers<const N: usize>(value: &Value) -> [f64; N] {
@@ -177,10 +177,10 @@ fn drag_follows_the_projected_area() {
     let mut vehicle = vehicle();
     let half_rho_cd = 0.5 * vehicle.drag.air_density_kg_m3 * vehicle.drag.coefficient;
     vehicle.drag.semi_axes_m = [0.1; 3];
-    let sphere = racer::dynamics::drag::ellipsoid(&vehicle.drag);
+    let sphere = racer::model::dynamics::drag::ellipsoid(&vehicle.drag);
     let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for v in [[3.0, 4.0, 0.0], [0.0, 0.0, -5.0], [0.0, 3.0, 4.0]] {
-        let k = racer::dynamics::drag::damping(&sphere, &axes, v);
+        let k = racer::model::dynamics::drag::damping(&sphere, &axes, v);
         assert!((k - half_rho_cd * std::f64::consts::PI * 0.01 * 5.0).abs() < 1e-12);
     }
 }

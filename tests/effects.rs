@@ -1,13 +1,13 @@
 //! Effects beyond the compact model: each changes the flight as its equation says, in every precision, and hardly where it is hardly there.
 
-use racer::dynamics::thrust::specific_thrust;
-use racer::dynamics::{Factors, Parameters, State, specific_force, step};
-use racer::effects::{self, Card, MODEL};
-use racer::lane::Level;
-use racer::rng::{Philox, Stream};
-use racer::sim::Batch;
-use racer::vehicle::Vehicle;
-use racer::vehicle::extension::Extension;
+use racer::base::lane::Level;
+use racer::base::rng::{Philox, Stream};
+use racer::model::dynamics::{Factors, Parameters, State, specific_force, step};
+use racer::model::effects::{self, Card, MODEL};
+use racer::model::sim::Batch;
+use racer::model::thrust::specific_thrust;
+use racer::model::vehicle::Vehicle;
+use racer::model::vehicle::extension::Extension;
 use std::collections::BTreeMap;
 
 const DT: f64 = 0.01;
@@ -137,7 +137,7 @@ fn a_negligible_effect_is_none() {
 }
 
 /// A vehicle file with these lines after those of `seed_class`.
-fn load(more: &str) -> Result<Vehicle, racer::check::BadInput> {
+fn load(more: &str) -> Result<Vehicle, racer::base::check::BadInput> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("mine.toml");
     std::fs::write(&path, toml::to_string(&seed_class()).expect("TOML") + more).expect("written");

@@ -1,17 +1,17 @@
 //! Recorded flights are those of the model, and their sensors err as configured.
 
-use racer::config::Setup;
-use racer::dynamics::{Factors, Parameters, State, specific_force};
-use racer::env::observe::OBSERVATIONS;
-use racer::env::reset::Place;
-use racer::env::{DT, Race};
+use racer::base::lane::Level;
+use racer::base::rng::{Philox, Stream};
+use racer::flight::fly::{by_pilot, by_policy};
+use racer::flight::pilot::Kind;
 use racer::flight::sensors::SensorConfig;
-use racer::fly::{by_pilot, by_policy};
-use racer::lane::Level;
-use racer::nn::Network;
-use racer::pilot::Kind;
-use racer::rng::{Philox, Stream};
-use racer::vehicle::Vehicle;
+use racer::learn::nn::Network;
+use racer::model::dynamics::{Factors, Parameters, State, specific_force};
+use racer::model::vehicle::Vehicle;
+use racer::race::config::Setup;
+use racer::race::env::observe::OBSERVATIONS;
+use racer::race::env::reset::Place;
+use racer::race::env::{DT, Race};
 
 fn sensors(name: &str) -> SensorConfig {
     SensorConfig::load(name).expect("built in")
@@ -114,7 +114,7 @@ fn a_policy_flies_as_it_is_scored() {
     let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).expect("built in");
     let race = Race::new(&config.env, &track, &vehicle, 1).scored(&track);
     let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(Stream::Weights, 0, 0));
-    let scored = racer::eval::fly::fly(Level::best(), &race, &network, Place::Pad, 1, 300);
+    let scored = racer::race::eval::fly::fly(Level::best(), &race, &network, Place::Pad, 1, 300);
     let flown = by_policy(Level::best(), &race, &network, &sensors("ideal"), 1, 3.0);
     assert_eq!(flown.log.setpoint.len(), scored.trace.len());
     assert_eq!(flown.failure.is_some(), scored.flights[0].failure.is_some());

@@ -1,10 +1,10 @@
 //! One whole PPO step and one GAE example against numbers from an independent automatic differentiation in f64.
 
-use racer::lane::{LANES, Level, Portable, Real};
-use racer::nn::{Layer, Network};
-use racer::ppo::gae;
-use racer::ppo::loss::Weights;
-use racer::ppo::update::{Batch, Hyper, Losses, Updater};
+use racer::base::lane::{LANES, Level, Portable, Real};
+use racer::learn::nn::{Layer, Network};
+use racer::learn::ppo::gae;
+use racer::learn::ppo::loss::Weights;
+use racer::learn::ppo::update::{Batch, Hyper, Losses, Updater};
 use serde_json::Value;
 
 fn golden() -> Value {

@@ -1,11 +1,11 @@
 //! Every hand-written derivative against central differences in double precision, term by term of the loss.
 
-use racer::lane::{LANES, Portable};
-use racer::nn::Network;
-use racer::policy::log_prob_of;
-use racer::ppo::loss::Weights;
-use racer::ppo::update::{Batch, Updater};
-use racer::rng::{Philox, Stream};
+use racer::base::lane::{LANES, Portable};
+use racer::base::rng::{Philox, Stream};
+use racer::learn::nn::Network;
+use racer::learn::policy::log_prob_of;
+use racer::learn::ppo::loss::Weights;
+use racer::learn::ppo::update::{Batch, Updater};
 
 const ROWS: usize = 5;
 const INPUTS: usize = 11;

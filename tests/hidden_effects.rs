@@ -3,9 +3,9 @@
 
 mod truth;
 
-use racer::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
-use racer::diagnose::{Diagnosed, diagnose};
-use racer::flight::quality::check;
+use racer::insight::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
+use racer::insight::diagnose::{Diagnosed, diagnose};
+use racer::insight::quality::check;
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 use truth::Vehicle;

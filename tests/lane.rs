@@ -1,6 +1,6 @@
 //! The 16-lane blocks: arithmetic like the scalars', and the stated accuracy of exp, ln, tanh, sin and cos.
 
-use racer::lane::{Kernel, LANES, Lane32, Level, Mask, dispatch};
+use racer::base::lane::{Kernel, LANES, Lane32, Level, Mask, dispatch};
 
 /// Largest errors over dense sweeps, in the order exp (relative), ln (relative or absolute near 1), tanh (relative), sin/cos.
 struct Errors;

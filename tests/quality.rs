@@ -2,9 +2,9 @@
 
 mod truth;
 
-use racer::flight::quality::{Finding, Quality, Severity, check};
 use racer::flight::spans::{contain, length};
 use racer::flight::{Log, Readable};
+use racer::insight::quality::{Finding, Quality, Severity, check};
 use std::sync::OnceLock;
 
 /// A minute of the pilot's flight.

@@ -1,22 +1,23 @@
 //! The rules of the race: passing and missing gates, ends of episodes, resets, rewards, observations.
 
-use racer::config::Config;
-use racer::dynamics::{Factors, State};
-use racer::env::gates::crossing;
-use racer::env::observe::{LAYOUT, OBSERVATIONS, layout};
-use racer::env::reset::{self, Place, Start};
-use racer::env::reward::TERMS;
-use racer::env::terminate::CAUSES;
-use racer::env::{Block, DT, Race};
-use racer::lane::{LANES, Lane, Portable};
-use racer::rng::{Philox, Stream};
-use racer::track::Track;
-use racer::vehicle::Vehicle;
+use racer::base::lane::{LANES, Lane, Portable};
+use racer::base::rng::{Philox, Stream};
+use racer::model::dynamics::{Factors, State};
+use racer::model::track::Track;
+use racer::model::vehicle::Vehicle;
+use racer::race::config::Config;
+use racer::race::env::gates::crossing;
+use racer::race::env::observe::{LAYOUT, OBSERVATIONS, layout};
+use racer::race::env::reset::{self, Place, Start};
+use racer::race::env::reward::TERMS;
+use racer::race::env::terminate::CAUSES;
+use racer::race::env::{Block, DT, Race};
 
 type L = Portable<f32>;
 
 fn race(settings: &str) -> (Race, Track) {
-    let settings: Vec<_> = settings.split_whitespace().map(|s| racer::config::Setting::parse(s).unwrap()).collect();
+    let settings: Vec<_> =
+        settings.split_whitespace().map(|s| racer::race::config::Setting::parse(s).unwrap()).collect();
     let config = Config::load("a2rl", &settings).unwrap();
     let track = Track::load("a2rl_s2").unwrap();
     let vehicle = Vehicle::load("seed_class").unwrap();
@@ -25,7 +26,7 @@ fn race(settings: &str) -> (Race, Track) {
 
 /// A block whose lanes all start at `position` with `velocity`, level and facing west, flying to `target`.
 fn block(race: &Race, position: [f64; 3], velocity: [f64; 3], target: usize) -> Block<L> {
-    let parameters = racer::dynamics::Parameters::new(&race.vehicle, &Factors::NOMINAL, DT);
+    let parameters = racer::model::dynamics::Parameters::new(&race.vehicle, &Factors::NOMINAL, DT);
     let command = [0.0, 0.0, 0.0, race.hover_command];
     let state = State::new(position, velocity, [0.0, 0.0, 0.0, 1.0], command, 23.5);
     let mut block = race.empty_block(0);

@@ -1,12 +1,12 @@
 //! The reference lap against laps whose time is known, and against the rules of the race.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use racer::env::gates::{crossing, frames};
-use racer::reference::course::{Aperture, Course};
-use racer::reference::mass::Mass;
-use racer::reference::{EFFORT, Effort, Reference, best, lap};
-use racer::track::Track;
-use racer::vehicle::Vehicle;
+use racer::model::track::Track;
+use racer::model::vehicle::Vehicle;
+use racer::race::env::gates::{crossing, frames};
+use racer::race::reference::course::{Aperture, Course};
+use racer::race::reference::mass::Mass;
+use racer::race::reference::{EFFORT, Effort, Reference, best, lap};
 use std::f64::consts::TAU;
 
 const WIDE: [[f64; 3]; 2] = [[-50.0, -50.0, -50.0], [50.0, 50.0, 50.0]];

@@ -3,21 +3,21 @@
 //! `RACER_BROWSER` names the browser (default: `chromium`, `chromium-browser` or `google-chrome`), `RACER_PYTHON` the interpreter.
 //! Where one is missing, its test says so and passes, unless `RACER_REQUIRE_BROWSER` or `RACER_REQUIRE_PYTHON` is set.
 
-use racer::config::Setup;
-use racer::env::Race;
-use racer::env::observe::OBSERVATIONS;
-use racer::env::reset::Place;
-use racer::eval::fly::fly;
-use racer::eval::spread::spread;
+use racer::base::lane::Level;
+use racer::base::rng::{Philox, Stream};
 use racer::flight::Log;
-use racer::lane::Level;
-use racer::nn::Network;
-use racer::replay::{Replay, mcap::mcap, race, recorded};
-use racer::report;
-use racer::report::commands::Commands;
-use racer::report::replay::page;
-use racer::rng::{Philox, Stream};
-use racer::track::Track;
+use racer::learn::nn::Network;
+use racer::model::track::Track;
+use racer::present::replay::{Replay, mcap::mcap, race, recorded};
+use racer::present::report;
+use racer::present::report::commands::Commands;
+use racer::present::report::replay::page;
+use racer::race::config::Setup;
+use racer::race::env::Race;
+use racer::race::env::observe::OBSERVATIONS;
+use racer::race::env::reset::Place;
+use racer::race::eval::fly::fly;
+use racer::race::eval::spread::spread;
 use serde_json::Value;
 use std::io::Write;
 use std::path::Path;

@@ -2,11 +2,11 @@
 
 mod truth;
 
-use racer::flight::quality::{Severity, check};
-use racer::identify::estimate::Estimate;
-use racer::identify::result::Identification;
-use racer::identify::{Options, identify};
-use racer::vehicle::Vehicle;
+use racer::insight::identify::estimate::Estimate;
+use racer::insight::identify::result::Identification;
+use racer::insight::identify::{Options, identify};
+use racer::insight::quality::{Severity, check};
+use racer::model::vehicle::Vehicle;
 use std::collections::BTreeMap;
 
 /// R2 on the validation part in the paper's Table 1: roll, pitch, yaw, thrust.

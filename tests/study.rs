@@ -2,10 +2,10 @@
 //! trace in the tables.
 
 use assert_cmd::Command;
-use racer::check::BadInput;
-use racer::document::Document;
-use racer::study::Study;
-use racer::study::plan::{Budget, Planned, plan};
+use racer::base::check::BadInput;
+use racer::base::document::Document;
+use racer::present::study::Study;
+use racer::present::study::plan::{Budget, Planned, plan};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -97,7 +97,7 @@ fn grids_groups_and_seeds_are_crossed() {
 fn the_simplest_study_is_its_configuration() {
     let Planned { plan, runs, .. } = planned("").unwrap();
     assert_eq!((plan.runs.len(), plan.runs[0].name.as_str()), (1, "base,seed=1"));
-    assert_eq!(runs[0].1, racer::config::Setup::load("a2rl", &[]).unwrap());
+    assert_eq!(runs[0].1, racer::race::config::Setup::load("a2rl", &[]).unwrap());
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! The tracks and vehicles that are shipped are sound, and those that cannot be raced are refused.
 
-use racer::document::Document;
-use racer::track::{Gate, GateKind, Track, spline::Spline};
-use racer::vehicle::Vehicle;
+use racer::base::document::Document;
+use racer::model::track::{Gate, GateKind, Track, spline::Spline};
+use racer::model::vehicle::Vehicle;
 
 const A2RL: &str = include_str!("../tracks/a2rl_s2.toml");
 const SEED: &str = include_str!("../configs/vehicles/seed_class.toml");

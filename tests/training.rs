@@ -1,10 +1,10 @@
 //! Training as a whole: the same bits on any number of threads, and that it learns.
 
-use racer::config::{Config, Setting};
-use racer::env::Race;
-use racer::env::tally::Tally;
-use racer::lane::Level;
-use racer::ppo::train::{Flow, Iteration, Observer, Trained, train};
+use racer::base::lane::Level;
+use racer::learn::ppo::train::{Flow, Iteration, Observer, Trained, train};
+use racer::race::config::{Config, Setting};
+use racer::race::env::Race;
+use racer::race::env::tally::Tally;
 
 #[derive(Default)]
 struct Log {

@@ -484,9 +484,9 @@ fn races_are_flown_without_excitation() {
 fn a_clean_flight_is_clean() {
     for (imu_hz, style) in [(100.0, Style::Excited), (1000.0, Style::Excited), (333.0, Style::Race)] {
         let log = fly(&Vehicle::draw(6), &[], &Setting { imu_hz, ..setting(60.0, 1.0, style) });
-        let quality = racer::flight::quality::check(&log);
+        let quality = racer::insight::quality::check(&log);
         let worst = quality.findings.iter().map(|finding| finding.severity).max();
-        assert!(worst <= Some(racer::flight::quality::Severity::Note), "{imu_hz} Hz: {:?}", quality.findings);
+        assert!(worst <= Some(racer::insight::quality::Severity::Note), "{imu_hz} Hz: {:?}", quality.findings);
     }
 }
 

@@ -4,9 +4,9 @@
 mod truth;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
-use racer::dynamics::{self, Factors, Parameters};
 use racer::flight::Log;
-use racer::pilot::bounds::{HEIGHT_M, REACH_M};
+use racer::flight::pilot::bounds::{HEIGHT_M, REACH_M};
+use racer::model::dynamics::{self, Factors, Parameters};
 use std::f64::consts::{PI, TAU};
 use truth::{State, Vehicle, drag, integrate, thrust};
 

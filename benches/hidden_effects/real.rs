@@ -52,7 +52,7 @@ fn one(args: &Args, file: &str, log: &Log, effects: &[(&str, f64)]) -> Vec<Judge
         println!("skipped: {file} identifies no vehicle: {error}");
         return Vec::new();
     }
-    let base = racer::vehicle::Vehicle::load(&folder.path.join("measured.toml").display().to_string());
+    let base = racer::model::vehicle::Vehicle::load(&folder.path.join("measured.toml").display().to_string());
     let base = base.expect("what identification wrote");
     let (untouched, seconds) = run::diagnose(args, &folder.path, log, &base);
     let names = |answer: &Answer| answer.named().map(|finding| finding.effect.clone()).collect();

@@ -6,7 +6,7 @@ use crate::case::Case;
 use crate::judge::Judged;
 use crate::truth::hidden;
 use racer::flight::Log;
-use racer::vehicle::Vehicle;
+use racer::model::vehicle::Vehicle;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;

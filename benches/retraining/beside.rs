@@ -5,9 +5,9 @@ use crate::race::{self, Raced};
 use crate::table;
 use crate::truth::Vehicle;
 use crate::truth::hidden::World;
-use racer::report::lap;
-use racer::snapshot::Snapshot;
-use racer::stats::quantile;
+use racer::base::stats::quantile;
+use racer::present::report::lap;
+use racer::race::snapshot::Snapshot;
 
 /// Races, prints laps and distances, and draws.
 ///
@@ -15,7 +15,7 @@ use racer::stats::quantile;
 ///
 /// Where the policy cannot be read or the picture not be written.
 pub fn show(args: &Args, policy: &str) {
-    let policy = Snapshot::read(&racer::run::find(policy).expect("a policy").snapshot).expect("a policy");
+    let policy = Snapshot::read(&racer::present::run::find(policy).expect("a policy").snapshot).expect("a policy");
     let there = race::race(&policy, &World::new(&Vehicle::seed_class(), &[]), &Args { agents: 1, ..args.clone() });
     let (here, there) = (race::in_racer(&policy), &there[0]);
     let title = |name: &str, raced: &Raced| format!("{name}, lap {} s", table::time(raced.lap_s));
@@ -33,7 +33,7 @@ pub fn show(args: &Args, policy: &str) {
     let svg =
         lap::beside(&policy.about.track, &paths, "the nominal vehicle's lap in both simulators").expect("a picture");
     let file = args.svg.as_ref().expect("asked for with the policy");
-    racer::fsio::write_new(file, svg.as_bytes()).expect("a new file");
+    racer::base::fsio::write_new(file, svg.as_bytes()).expect("a new file");
 }
 
 fn distance(a: &[f64; 6], b: &[f64; 6]) -> f64 {

@@ -2,8 +2,8 @@
 
 use crate::args::Args;
 use racer::flight::Log;
-use racer::snapshot::Snapshot;
-use racer::vehicle::Vehicle;
+use racer::model::vehicle::Vehicle;
+use racer::race::snapshot::Snapshot;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -74,7 +74,7 @@ impl<'a> Folder<'a> {
         let track = self.args.track.as_deref().map(name_or_file);
         to.extend(track.iter().flat_map(|track| ["--track", track]));
         self.run(&to).unwrap_or_else(|error| panic!("{run}: {error}"));
-        let path = self.path.join(run).join(racer::run::POLICY);
+        let path = self.path.join(run).join(racer::present::run::POLICY);
         Snapshot::read(&path).unwrap_or_else(|error| panic!("{run}: {error}"))
     }
 

@@ -2,9 +2,9 @@
 
 use super::pool::threads;
 use super::{Outcome, tell};
-use crate::bench::{Figures, Pair, measure};
-use crate::config::{DEFAULT, Setup};
-use crate::lane::Level;
+use crate::base::lane::Level;
+use crate::present::bench::{Figures, Pair, measure};
+use crate::race::config::{DEFAULT, Setup};
 use serde::Serialize;
 use std::time::Duration;
 

@@ -1,9 +1,9 @@
 //! `racer check`: what a flight log holds, and what is wrong with it.
 
 use super::{Outcome, findings, tell};
-use crate::flight::quality::{Finding, Parameter, Summary, check};
 use crate::flight::spans::Span;
 use crate::flight::{self, Readable};
+use crate::insight::quality::{Finding, Parameter, Summary, check};
 use serde::Serialize;
 use std::path::PathBuf;
 

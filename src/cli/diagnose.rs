@@ -3,17 +3,17 @@
 mod worth;
 
 use super::{Outcome, columns, findings, tell};
-use crate::check::{BadInput, Invalid};
-use crate::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
-use crate::diagnose::{Diagnosed, diagnose};
-use crate::flight::quality::{Quality, check};
+use crate::base::check::{BadInput, Invalid};
+use crate::base::fsio::{self, Reserved};
 use crate::flight::{self, Readable};
-use crate::fsio::{self, Reserved};
-use crate::identify::{self, identify};
-use crate::report::diagnosis::Figures;
-use crate::report::{self, digits};
-use crate::run;
-use crate::vehicle::Vehicle;
+use crate::insight::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
+use crate::insight::diagnose::{Diagnosed, diagnose};
+use crate::insight::identify::{self, identify};
+use crate::insight::quality::{Quality, check};
+use crate::model::vehicle::Vehicle;
+use crate::present::report::diagnosis::Figures;
+use crate::present::report::{self, digits};
+use crate::present::run;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 

@@ -1,10 +1,10 @@
 //! `racer extend`: a vehicle with effects of sizes given by hand, to see what they would do.
 
 use super::{Outcome, columns, tell};
-use crate::check::{BadInput, Check};
-use crate::effects::{self, MODEL};
-use crate::fsio::Reserved;
-use crate::vehicle::Vehicle;
+use crate::base::check::{BadInput, Check};
+use crate::base::fsio::Reserved;
+use crate::model::effects::{self, MODEL};
+use crate::model::vehicle::Vehicle;
 use std::path::PathBuf;
 
 /// Give a vehicle effects beyond the compact model, or list them

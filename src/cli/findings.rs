@@ -2,8 +2,8 @@
 
 use super::columns::table;
 use crate::flight::Log;
-use crate::flight::quality::{Finding, Parameter, Quality, Severity, Summary};
 use crate::flight::spans::length;
+use crate::insight::quality::{Finding, Parameter, Quality, Severity, Summary};
 
 /// What the log holds, stream by stream.
 pub fn streams(streams: &[Summary]) -> String {

@@ -1,19 +1,19 @@
 //! `racer fly`: a flight in the simulator, recorded.
 
 use super::{Outcome, tell};
-use crate::check::BadInput;
-use crate::document::nearest;
-use crate::env::Race;
+use crate::base::check::BadInput;
+use crate::base::document::nearest;
+use crate::base::fsio::Reserved;
+use crate::base::lane::Level;
+use crate::flight::fly::{Flown, by_pilot, by_policy};
+use crate::flight::pilot::Kind;
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Stream, write};
-use crate::fly::{Flown, by_pilot, by_policy};
-use crate::fsio::Reserved;
-use crate::lane::Level;
-use crate::pilot::Kind;
-use crate::run;
-use crate::snapshot::{About, Snapshot};
-use crate::track::Track;
-use crate::vehicle::Vehicle;
+use crate::model::track::Track;
+use crate::model::vehicle::Vehicle;
+use crate::present::run;
+use crate::race::env::Race;
+use crate::race::snapshot::{About, Snapshot};
 use std::fmt::Write;
 use std::path::PathBuf;
 

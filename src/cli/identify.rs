@@ -1,16 +1,16 @@
 //! `racer identify`: a vehicle from its flights.
 
 use super::{Outcome, columns, findings, tell};
-use crate::check::{BadInput, Check};
-use crate::flight::quality::{Finding, Quality, Severity, check};
+use crate::base::check::{BadInput, Check};
+use crate::base::fsio::Reserved;
 use crate::flight::{self, Readable};
-use crate::fsio::Reserved;
-use crate::identify::document::{CheckedLog, Document};
-use crate::identify::estimate::Estimate;
-use crate::identify::result::Identification;
-use crate::identify::{AXES, Options, identify};
-use crate::report;
-use crate::vehicle::Vehicle;
+use crate::insight::identify::document::{CheckedLog, Document};
+use crate::insight::identify::estimate::Estimate;
+use crate::insight::identify::result::Identification;
+use crate::insight::identify::{AXES, Options, identify};
+use crate::insight::quality::{Finding, Quality, Severity, check};
+use crate::model::vehicle::Vehicle;
+use crate::present::report;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! `racer import`: a flight log of any kind as a canonical one.
 
 use super::{Outcome, columns, tell};
+use crate::base::fsio::Reserved;
 use crate::flight::{self, Log, Options, Readable, Stream};
-use crate::fsio::Reserved;
 use std::path::PathBuf;
 
 /// Convert a flight log to the canonical form: MCAP with ROS 2 messages

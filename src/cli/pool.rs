@@ -1,6 +1,6 @@
 //! The threads that everything runs on.
 
-use crate::run::provenance::processors;
+use crate::present::run::provenance::processors;
 
 /// Threads to use: those asked for, or all that this process may use.
 pub fn threads(asked: Option<usize>) -> usize {

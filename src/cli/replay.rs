@@ -1,18 +1,18 @@
 //! `racer replay`: a flight to look at, in Foxglove and in a browser.
 
 use super::{Outcome, tell};
-use crate::check::BadInput;
-use crate::env::Race;
+use crate::base::check::BadInput;
+use crate::base::fsio;
+use crate::base::lane::Level;
 use crate::flight::{self, Readable};
-use crate::fly::race::MOST;
-use crate::fsio;
-use crate::lane::Level;
-use crate::replay::{self, Replay};
-use crate::report;
-use crate::run;
-use crate::snapshot::{About, Snapshot};
-use crate::track::Track;
-use crate::vehicle::Vehicle;
+use crate::model::track::Track;
+use crate::model::vehicle::Vehicle;
+use crate::present::replay::{self, Replay};
+use crate::present::report;
+use crate::present::run;
+use crate::race::env::Race;
+use crate::race::heat::MOST;
+use crate::race::snapshot::{About, Snapshot};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 

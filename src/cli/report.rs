@@ -4,11 +4,11 @@ mod run;
 mod study;
 
 use super::{Outcome, tell};
-use crate::check::BadInput;
-use crate::fsio::{new_folder, write_new};
-use crate::run::free;
-use crate::run::metrics::METRICS;
-use crate::study::folder::PLAN;
+use crate::base::check::BadInput;
+use crate::base::fsio::{new_folder, write_new};
+use crate::present::run::free;
+use crate::present::run::metrics::METRICS;
+use crate::present::study::folder::PLAN;
 use std::path::{Path, PathBuf};
 
 /// Draw the figures of a run or of a study, and one page with all of them

@@ -6,14 +6,14 @@ mod text;
 mod work;
 
 use super::{Outcome, columns, interrupt, tell};
-use crate::check::BadInput;
-use crate::fsio::Reserved;
-use crate::run::RUNS;
-use crate::run::provenance::processors;
-use crate::study::folder::Folder;
-use crate::study::plan::{Budget, Planned, plan};
-use crate::study::shard::Shard;
-use crate::study::{Study, tables};
+use crate::base::check::BadInput;
+use crate::base::fsio::Reserved;
+use crate::present::run::RUNS;
+use crate::present::run::provenance::processors;
+use crate::present::study::folder::Folder;
+use crate::present::study::plan::{Budget, Planned, plan};
+use crate::present::study::shard::Shard;
+use crate::present::study::{Study, tables};
 use std::path::{Path, PathBuf};
 use work::{Ended, Work};
 

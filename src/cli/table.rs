@@ -1,9 +1,9 @@
 //! Evaluation reports as text.
 
-use crate::eval::Report;
-use crate::eval::choose::DEPLOYABLE;
-use crate::eval::pace::Pace;
-use crate::eval::score::{Benchmark, LapTime};
+use crate::race::eval::Report;
+use crate::race::eval::choose::DEPLOYABLE;
+use crate::race::eval::pace::Pace;
+use crate::race::eval::score::{Benchmark, LapTime};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 

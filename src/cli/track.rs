@@ -1,11 +1,11 @@
 //! `racer track`: what a track is like, and how fast it could be flown.
 
 use super::{Outcome, columns, tell};
-use crate::fsio::Reserved;
-use crate::reference::{self, METHOD, Reference};
-use crate::report::lap;
-use crate::track::{GateKind, Section, Shape, Track};
-use crate::vehicle::Vehicle;
+use crate::base::fsio::Reserved;
+use crate::model::track::{GateKind, Section, Shape, Track};
+use crate::model::vehicle::Vehicle;
+use crate::present::report::lap;
+use crate::race::reference::{self, METHOD, Reference};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -69,7 +69,7 @@ struct Document<'a> {
 struct Gate<'a> {
     label: String,
     #[serde(flatten)]
-    gate: &'a crate::track::Gate,
+    gate: &'a crate::model::track::Gate,
     /// Along the reset spline, m.
     at_m: f64,
 }

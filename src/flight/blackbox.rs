@@ -8,8 +8,8 @@ mod header;
 
 use super::table::{LOG_TIME, Tables};
 use super::{Readable, VehicleRecord};
-use crate::check::BadInput;
-use crate::document::nearest;
+use crate::base::check::BadInput;
+use crate::base::document::nearest;
 use blackbox_log::frame::FrameDef;
 use blackbox_log::headers::Firmware;
 use blackbox_log::{Headers, ParserEvent};

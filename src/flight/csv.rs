@@ -2,7 +2,7 @@
 
 use super::Readable;
 use super::table::Table;
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use csv::{ByteRecord, ErrorKind};
 use flate2::bufread::MultiGzDecoder;
 use std::collections::BTreeSet;

@@ -14,8 +14,8 @@ pub use parts::{Battery, Imu, Odometry, Rotors, Setpoint};
 pub use quantity::{Scalar, Time, Vector};
 pub use units::{Acceleration, AngularRate, Current, Length, Speed, Voltage};
 
-use crate::check::{BadInput, Check, Invalid};
-use crate::document::Library;
+use crate::base::check::{BadInput, Check, Invalid};
+use crate::base::document::Library;
 use parts::Part;
 use serde::Deserialize;
 use std::collections::BTreeSet;

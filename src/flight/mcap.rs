@@ -19,7 +19,7 @@ mod schema;
 pub(super) mod vehicle;
 
 use super::table::Tables;
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use reader::Reader;
 
 /// A topic of a file.

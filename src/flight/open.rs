@@ -5,7 +5,7 @@ mod choose;
 use super::mapping::Mapping;
 use super::table::Tables;
 use super::{Log, blackbox, csv, mcap, ulog};
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! How simulated flights are measured: rates, noise, bias and resolution of each stream.
 
-use crate::check::{BadInput, Check, Invalid};
-use crate::document::Library;
-use crate::rng::Sequence;
+use crate::base::check::{BadInput, Check, Invalid};
+use crate::base::document::Library;
+use crate::base::rng::Sequence;
 use serde::{Deserialize, Serialize};
 
 const LIBRARY: Library = Library {
@@ -148,7 +148,7 @@ impl Check for SensorConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::{Philox, Stream};
+    use crate::base::rng::{Philox, Stream};
 
     #[test]
     fn errors_are_as_large_as_configured() {

@@ -29,7 +29,7 @@ pub fn held(times: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
 
 /// The usual distance of `times`, s: their median; NaN for fewer than two.
 pub fn period(times: &[f64]) -> f64 {
-    crate::stats::median(&times.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>())
+    crate::base::stats::median(&times.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ mod format;
 
 use super::Readable;
 use super::table::{LOG_TIME, Table, Tables};
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use format::{Formats, Leaf};
 use std::collections::{BTreeMap, HashMap};
 

@@ -25,8 +25,8 @@ use link::Link;
 use motion::Inputs;
 use motors::Controller;
 use race::Racer;
+use racer::flight::pilot::{Limits, Pilot, Seen};
 use racer::flight::{Log, VehicleRecord};
-use racer::pilot::{Limits, Pilot, Seen};
 use sense::Sensors;
 use weather::Weather;
 

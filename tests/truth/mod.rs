@@ -19,8 +19,8 @@ pub mod thrust;
 pub mod vehicle;
 
 use integrate::step;
+use racer::flight::pilot::{Limits, Pilot, Seen};
 use racer::flight::{Log, VehicleRecord};
-use racer::pilot::{Limits, Pilot, Seen};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use sense::Sensors;

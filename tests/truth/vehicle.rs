@@ -128,16 +128,16 @@ impl Vehicle {
     }
 
     /// The same vehicle in the crate's terms.
-    pub fn in_racer(&self) -> racer::vehicle::Vehicle {
-        let mut vehicle = racer::vehicle::Vehicle::load("seed_class").expect("built in");
+    pub fn in_racer(&self) -> racer::model::vehicle::Vehicle {
+        let mut vehicle = racer::model::vehicle::Vehicle::load("seed_class").expect("built in");
         vehicle.name = "true".into();
         vehicle.mass_kg = self.mass;
         vehicle.gravity_m_s2 = self.gravity;
         vehicle.thrust_n = self.thrust_n;
         let [roll, pitch, yaw, thrust] = self.tau;
-        vehicle.time_constant_s = racer::vehicle::TimeConstants { roll, pitch, yaw, thrust };
+        vehicle.time_constant_s = racer::model::vehicle::TimeConstants { roll, pitch, yaw, thrust };
         let [roll, pitch, yaw] = self.max_rate.map(f64::to_degrees);
-        vehicle.max_rate_deg_s = racer::vehicle::MaxRates { roll, pitch, yaw };
+        vehicle.max_rate_deg_s = racer::model::vehicle::MaxRates { roll, pitch, yaw };
         vehicle.drag.semi_axes_m = self.semi_axes;
         vehicle.drag.coefficient = self.drag_coefficient;
         vehicle.drag.air_density_kg_m3 = self.air_density;

@@ -1,17 +1,17 @@
 //! What an extension means for racing: policies flown with it and without.
 
-use crate::check::BadInput;
+use crate::base::check::BadInput;
+use crate::base::fsio::{new_folder, write_new};
+use crate::base::lane::Level;
 use crate::cli::pool::{pool, threads};
 use crate::cli::{columns, tell, train};
-use crate::env::Race;
-use crate::env::reset::Place;
-use crate::eval::benchmark;
-use crate::eval::score::Benchmark;
-use crate::fsio::{new_folder, write_new};
-use crate::lane::Level;
-use crate::run;
-use crate::snapshot::Snapshot;
-use crate::vehicle::Vehicle;
+use crate::model::vehicle::Vehicle;
+use crate::present::run;
+use crate::race::env::Race;
+use crate::race::env::reset::Place;
+use crate::race::eval::benchmark;
+use crate::race::eval::score::Benchmark;
+use crate::race::snapshot::Snapshot;
 use std::path::{Path, PathBuf};
 
 /// A policy in a vehicle: how it was trained, what it flew in, and how that went.

@@ -1,13 +1,13 @@
 //! `racer eval --sensitivity`: which error of the model costs a policy most.
 
 use super::super::{Outcome, columns, pool, print, tell};
-use crate::env::Race;
-use crate::eval::EvalConfig;
-use crate::eval::sensitivity::{Cell, Row, Sensitivity, sensitivity};
-use crate::fsio::Reserved;
-use crate::lane::Level;
-use crate::nn::Network;
-use crate::track::Track;
+use crate::base::fsio::Reserved;
+use crate::base::lane::Level;
+use crate::learn::nn::Network;
+use crate::model::track::Track;
+use crate::race::env::Race;
+use crate::race::eval::EvalConfig;
+use crate::race::eval::sensitivity::{Cell, Row, Sensitivity, sensitivity};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 

@@ -1,20 +1,20 @@
 //! The report of a run.
 
 use super::Drawn;
+use crate::base::lane::Level;
 use crate::cli::pool::{pool, threads};
-use crate::env::Race;
-use crate::env::reset::Place;
-use crate::eval::Report;
-use crate::eval::benchmark;
-use crate::eval::fly::Moment;
-use crate::eval::spread::spread;
-use crate::lane::Level;
-use crate::report::commands::{self, Commands};
-use crate::report::{lap, run as page, spread as spreading};
-use crate::run::figures::{lap_title, training};
-use crate::run::metrics::METRICS;
-use crate::run::{evaluated, find, metrics};
-use crate::snapshot::Snapshot;
+use crate::present::report::commands::{self, Commands};
+use crate::present::report::figures::{lap_title, training};
+use crate::present::report::{lap, run as page, spread as spreading};
+use crate::present::run::metrics::METRICS;
+use crate::present::run::{evaluated, find, metrics};
+use crate::race::env::Race;
+use crate::race::env::reset::Place;
+use crate::race::eval::Report;
+use crate::race::eval::benchmark;
+use crate::race::eval::fly::Moment;
+use crate::race::eval::spread::spread;
+use crate::race::snapshot::Snapshot;
 use std::path::Path;
 
 /// Randomised vehicles in the figure of the spread (the paper's Figure 7 has some hundreds on top of each other).

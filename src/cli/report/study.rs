@@ -1,10 +1,10 @@
 //! The report of a study.
 
 use super::Drawn;
-use crate::check::BadInput;
-use crate::report::study;
-use crate::study::curves;
-use crate::study::folder::Folder;
+use crate::base::check::BadInput;
+use crate::present::report::study;
+use crate::present::study::curves;
+use crate::present::study::folder::Folder;
 use std::path::Path;
 
 /// Page and figures of the study in `path`, as far as it is finished.

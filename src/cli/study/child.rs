@@ -1,7 +1,7 @@
 //! One run as a process of its own: one that crashes takes nothing along, and none outlives the study.
 
 use crate::cli::interrupt;
-use crate::config::Setting;
+use crate::race::config::Setting;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};

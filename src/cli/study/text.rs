@@ -1,8 +1,8 @@
 //! A study's results as text: the ranking with what matters beside it, then each axis.
 
 use crate::cli::columns;
-use crate::study::results::{Group, Results};
-use crate::study::summary::Summary;
+use crate::present::study::results::{Group, Results};
+use crate::present::study::summary::Summary;
 
 /// All tables.
 pub fn results(results: &Results) -> String {

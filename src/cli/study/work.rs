@@ -2,12 +2,12 @@
 
 use super::child::{self, End, Training};
 use super::display::Display;
+use crate::base::fsio::{self, Claim};
 use crate::cli::interrupt;
-use crate::fsio::{self, Claim};
-use crate::study::folder::{Folder, same};
-use crate::study::plan::Planned;
-use crate::study::result::{self, About, RESULT, RunResult};
-use crate::study::shard::Shard;
+use crate::present::study::folder::{Folder, same};
+use crate::present::study::plan::Planned;
+use crate::present::study::result::{self, About, RESULT, RunResult};
+use crate::present::study::shard::Shard;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,7 +1,7 @@
 //! Fields of blackbox frames in physical units.
 
 use super::header::Header;
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use crate::flight::table::{LOG_TIME, Table};
 use blackbox_log::frame::{Frame, FrameDef, GpsFrame, GpsFrameDef};
 use std::collections::BTreeMap;

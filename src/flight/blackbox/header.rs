@@ -1,6 +1,6 @@
 //! The text header of a flight: scales, and what a full stick asks for.
 
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use std::collections::HashMap;
 
 /// `H name:value` lines.

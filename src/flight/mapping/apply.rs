@@ -2,7 +2,7 @@
 
 use super::source::{Missing, Open, Reader, Rows, advice};
 use super::{Mapping, Part, streams};
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use crate::flight::table::Tables;
 use crate::flight::{Log, Stream, VehicleRecord};
 

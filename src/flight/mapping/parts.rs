@@ -3,7 +3,7 @@
 use super::frames::{Body, VelocityFrame, World};
 use super::quantity::{Scalar, Time, Vector};
 use super::units::{Acceleration, AngularRate, Current, Length, One, Speed, Voltage};
-use crate::check::Invalid;
+use crate::base::check::Invalid;
 use serde::Deserialize;
 
 /// Commands to the rate controller.

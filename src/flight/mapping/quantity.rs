@@ -1,7 +1,7 @@
 //! Numbers of a stream out of columns: field, unit, scale, offset.
 
 use super::units::{Duration, Unit};
-use crate::check::Invalid;
+use crate::base::check::Invalid;
 use serde::Deserialize;
 
 /// When the rows of a table were measured.

@@ -3,8 +3,8 @@
 use super::quantity::{Scalar, Time, Vector, signed};
 use super::units::Unit;
 use super::{Mapping, Part, join};
-use crate::check::BadInput;
-use crate::document::nearest;
+use crate::base::check::BadInput;
+use crate::base::document::nearest;
 use crate::flight::table::{LOG_TIME, Table, Tables};
 
 /// Time of a message that carries its own.

@@ -3,7 +3,7 @@
 use super::bytes::Bytes;
 use super::chunk;
 use super::record::{self, Record};
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use crate::flight::Readable;
 use ::mcap::{MAGIC, records::op};
 

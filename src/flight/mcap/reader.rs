@@ -6,7 +6,7 @@ use super::decoder::{Decoder, Schema};
 use super::file::Stop;
 use super::record::{self, Message, Record};
 use super::vehicle;
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use crate::flight::table::Tables;
 use crate::flight::{Readable, VehicleRecord};
 use std::collections::{BTreeMap, HashMap};

@@ -1,7 +1,7 @@
 //! The metadata record `racer.vehicle`.
 
 use super::bytes::Bytes;
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use crate::flight::VehicleRecord;
 use std::collections::BTreeMap;
 

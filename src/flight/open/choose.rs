@@ -1,6 +1,6 @@
 //! The built-in mapping that a CSV file needs, told by its columns.
 
-use crate::check::BadInput;
+use crate::base::check::BadInput;
 use crate::flight::mapping::{LIBRARY, Mapping};
 
 /// The built-in mapping, the only one, all of whose columns there are. Fails otherwise, and says how near each came.

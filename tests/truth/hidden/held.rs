@@ -6,7 +6,7 @@ use super::motors::Controller;
 use super::weather::Weather;
 use super::{Craft, World, seen};
 use crate::truth::{CONTROL_S, STEPS};
-use racer::pilot::Seen;
+use racer::flight::pilot::Seen;
 
 /// See the module.
 pub struct Flight<'a> {

@@ -2,9 +2,9 @@
 
 use crate::truth::Vehicle;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use racer::pilot::Seen;
-use racer::track::Track;
-use racer::track::spline::Spline;
+use racer::flight::pilot::Seen;
+use racer::model::track::Track;
+use racer::model::track::spline::Spline;
 
 const TRACKS: [&str; 4] = ["a2rl_s2", "a2rl_s1", "uzh_split_s", "figure_eight"];
 /// Places that the curve is looked at.

@@ -1,0 +1,9 @@
+//! Numbers, random numbers, files: nothing of racing.
+
+pub mod check;
+pub mod document;
+pub mod fsio;
+pub mod lane;
+pub mod peak;
+pub mod rng;
+pub mod stats;

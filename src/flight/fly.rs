@@ -1,0 +1,99 @@
+//! Flying in the simulator and recording what a real vehicle's log would hold.
+
+mod recorder;
+
+use crate::base::lane::{Level, dispatch};
+use crate::flight::Log;
+use crate::flight::pilot::{Kind, Limits, Pilot, Seen};
+use crate::flight::sensors::SensorConfig;
+use crate::learn::nn::Network;
+use crate::model::dynamics::{Factors, Parameters, State};
+use crate::model::thrust::specific_thrust;
+use crate::model::vehicle::Vehicle;
+use crate::race::env::terminate::CAUSES;
+use crate::race::env::{DT, Race};
+use crate::race::heat;
+use recorder::Recorder;
+
+/// A recorded flight.
+#[derive(Clone, Debug)]
+pub struct Flown {
+    pub log: Log,
+    /// Length of the flight, s.
+    pub seconds: f64,
+    /// Largest speed, m/s.
+    pub top_speed: f64,
+    /// Times from one crossing of the first gate to the next, s.
+    pub laps: Vec<f64>,
+    /// Why a race ended before its time, one of [`CAUSES`].
+    pub failure: Option<&'static str>,
+}
+
+/// Time that is recorded after the landing, s.
+const AFTER_S: f64 = 1.0;
+
+/// The excitation pilot flies `kinds` of manoeuvres, all where none is named, from the ground until it has landed, for at
+/// most `seconds`. It lands early where the battery is empty before.
+pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Kind], seed: u64, seconds: f64) -> Flown {
+    let parameters = Parameters::new(vehicle, &Factors::NOMINAL, DT);
+    let battery = &vehicle.battery;
+    let limits = Limits {
+        max_rate_rad_s: vehicle.max_rates_rad_s(),
+        hover_command: vehicle.hover_command(0.5 * (battery.full_v + battery.empty_v)),
+        seconds,
+        empty_v: battery.empty_v,
+    };
+    let mut pilot = Pilot::new(seed, limits).only(kinds);
+    let mut recorder = Recorder::new(vehicle, sensors, seed);
+    let mut state = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], battery.full_v);
+    recorder.rest(true);
+    let mut landed_s = 0.0;
+    while recorder.time_s() < seconds - 0.5 * DT && landed_s < AFTER_S {
+        let rates = if recorder.resting() { [0.0; 3] } else { state.body_rates(&parameters) };
+        let (position, velocity, attitude, voltage) = (state.position, state.velocity, state.attitude, state.voltage);
+        let seen = Seen { time_s: recorder.time_s(), position, velocity, attitude, rates, voltage };
+        let command = pilot.command(&seen);
+        state = recorder.hold(&state, command);
+        settle(&mut state, &mut recorder, &parameters);
+        landed_s = if pilot.landed() { landed_s + DT } else { 0.0 };
+    }
+    recorder.finish(Vec::new(), None)
+}
+
+/// The ground at height 0: it carries what thrust does not lift, and stops what comes down.
+fn settle(state: &mut State<f64>, recorder: &mut Recorder, parameters: &Parameters<f64>) {
+    let lifts = specific_thrust(&parameters.thrust, state.command[3], state.voltage) > parameters.gravity;
+    if recorder.resting() && lifts {
+        recorder.rest(false);
+    } else if state.position[2] < 0.0 && !lifts {
+        let [w, _, _, z] = state.attitude;
+        // Level, with the heading that it came down with.
+        let norm = w.hypot(z).max(1e-9);
+        state.attitude = [w / norm, 0.0, 0.0, z / norm];
+        state.position[2] = 0.0;
+        state.velocity = [0.0; 3];
+        recorder.rest(true);
+    }
+}
+
+/// A policy's deterministic mean races from the pad, lap after lap, until it fails or for `seconds`. The states at 100 Hz
+/// are those of the race, so that it flies as in an evaluation; what lies between is integrated from each of them.
+pub fn by_policy(
+    level: Level,
+    race: &Race,
+    network: &Network<f32>,
+    sensors: &SensorConfig,
+    seed: u64,
+    seconds: f64,
+) -> Flown {
+    let steps = (seconds / race.dt).round() as usize;
+    let fly = heat::Heat { race, network, first: 0, vehicles: 1, steps, gates: usize::MAX, seen: false };
+    let raced = dispatch(level, fly).remove(0);
+    let mut recorder = Recorder::new(&race.vehicle, sensors, seed);
+    for (state, command, _) in &raced.steps {
+        recorder.hold(&state.map(f64::from), command.map(f64::from));
+    }
+    let crossings: Vec<f64> = raced.passes.iter().step_by(race.gates.len()).copied().collect();
+    let laps = crossings.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    recorder.finish(laps, raced.failure.map(|cause| CAUSES[cause]))
+}

@@ -1,0 +1,193 @@
+//! The excitation pilot: flies short manoeuvres that together show a vehicle's response, thrust, drag and battery.
+//!
+//! It rests on the ground, takes off, then by turns flies to where a manoeuvre begins and flies it, until it lands. The
+//! manoeuvres come in rounds of random order, so that each is flown at high and at low voltage. It knows a vehicle by
+//! its limits only, and keeps within [`bounds`].
+
+pub mod bounds;
+mod cascade;
+pub mod kind;
+mod plan;
+mod script;
+mod view;
+
+use crate::base::rng::{Philox, Sequence, Stream};
+use cascade::{Cascade, Demand};
+pub use kind::Kind;
+use nalgebra::Vector3;
+use plan::Plan;
+use script::Now;
+use view::View;
+
+/// What the pilot sees: position (m) and velocity (m/s) in the world, attitude (body to world, w x y z), body rates
+/// (rad/s), voltage (V).
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    pub time_s: f64,
+    pub position: [f64; 3],
+    pub velocity: [f64; 3],
+    pub attitude: [f64; 4],
+    pub rates: [f64; 3],
+    pub voltage: f64,
+}
+
+/// What the pilot knows of the vehicle and the flight.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Body rates at full stick, rad/s.
+    pub max_rate_rad_s: [f64; 3],
+    /// Thrust command that about carries the vehicle, -1..1.
+    pub hover_command: f64,
+    /// When it is to be back on the ground, s.
+    pub seconds: f64,
+    /// Voltage at which it lands earlier, V.
+    pub empty_v: f64,
+}
+
+/// Time on the ground before taking off, s.
+const GROUND_S: f64 = 2.0;
+/// Length from which a flight is long, s.
+const LONG_S: f64 = 200.0;
+/// Height at which the first manoeuvre is planned, m.
+const TAKEN_OFF_M: f64 = 12.0;
+/// Time kept for the landing, s.
+const LANDING_S: f64 = 16.0;
+/// Height over the ground at which the throttle is closed, m.
+const TOUCH_M: f64 = 0.15;
+
+#[derive(Debug)]
+enum Phase {
+    Ground,
+    TakeOff,
+    /// On the way to where the manoeuvre begins.
+    Approach(Plan),
+    Manoeuvre(Plan),
+    Landing,
+    Landed,
+}
+
+/// See the module.
+#[derive(Debug)]
+pub struct Pilot {
+    limits: Limits,
+    kinds: Vec<Kind>,
+    /// Kinds left of this round, last first.
+    deck: Vec<Kind>,
+    /// How often each kind was planned.
+    flown: [usize; Kind::ALL.len()],
+    rng: Sequence,
+    cascade: Cascade,
+    /// Where the first command was asked for: the origin of its box.
+    origin: Option<Vector3<f64>>,
+    phase: Phase,
+    /// Since when, s.
+    since: f64,
+    before: f64,
+}
+
+impl Pilot {
+    /// A pilot that flies all kinds of manoeuvres, but for the low hover in a short flight; `seed` decides their order and sizes.
+    pub fn new(seed: u64, limits: Limits) -> Self {
+        Self {
+            limits,
+            // A low hover shows nothing but the ground effect: a short flight has no time for it.
+            kinds: Kind::ALL.into_iter().filter(|kind| limits.seconds > LONG_S || *kind != Kind::LowHover).collect(),
+            deck: Vec::new(),
+            flown: [0; Kind::ALL.len()],
+            rng: Philox::new(seed).sequence(Stream::Pilot, 0, 0),
+            cascade: Cascade::new(&limits),
+            origin: None,
+            phase: Phase::Ground,
+            since: 0.0,
+            before: f64::NEG_INFINITY,
+        }
+    }
+
+    /// Flies `kinds` only; all of them where none is named.
+    pub fn only(mut self, kinds: &[Kind]) -> Self {
+        if !kinds.is_empty() {
+            self.kinds = kinds.to_vec();
+        }
+        self
+    }
+
+    /// The command for the next 10 ms: roll, pitch, yaw rate and thrust, each in [-1, 1].
+    pub fn command(&mut self, seen: &Seen) -> [f64; 4] {
+        if self.origin.is_none() {
+            self.since = seen.time_s;
+        }
+        let origin = *self.origin.get_or_insert(Vector3::from(seen.position));
+        let view = View::new(seen, origin);
+        let dt = (seen.time_s - self.before).clamp(0.0, 0.1);
+        self.before = seen.time_s;
+        loop {
+            let time = seen.time_s - self.since;
+            let now = Now { time, dt, view: &view, limits: &self.limits };
+            if let Some(demand) = self.phase.demand(&now, &mut self.rng) {
+                return match demand {
+                    Some(demand) => self.cascade.command(&view, &demand, dt),
+                    None => [0.0, 0.0, 0.0, -1.0],
+                };
+            }
+            self.phase = self.next(&view);
+            self.since = seen.time_s;
+        }
+    }
+
+    /// Whether it is back on the ground for good.
+    pub fn landed(&self) -> bool {
+        matches!(self.phase, Phase::Landed)
+    }
+
+    /// The phase after this one.
+    fn next(&mut self, view: &View) -> Phase {
+        let over = view.time > self.limits.seconds - LANDING_S || view.voltage < self.limits.empty_v;
+        match std::mem::replace(&mut self.phase, Phase::Landed) {
+            Phase::Ground => Phase::TakeOff,
+            Phase::Landing | Phase::Landed => Phase::Landed,
+            _ if over => Phase::Landing,
+            Phase::Approach(plan) => Phase::Manoeuvre(plan),
+            Phase::TakeOff | Phase::Manoeuvre(_) => {
+                self.cascade.settle();
+                Phase::Approach(self.plan(view))
+            }
+        }
+    }
+
+    fn plan(&mut self, view: &View) -> Plan {
+        if self.deck.is_empty() {
+            let (mut early, mut late): (Vec<_>, Vec<_>) = self.kinds.iter().partition(|kind| kind.early());
+            self.rng.shuffle(&mut early);
+            self.rng.shuffle(&mut late);
+            // Drawn from the end.
+            self.deck = [late, early].concat();
+        }
+        // The deck was just filled, and never with nothing.
+        let kind = self.deck.pop().unwrap_or(Kind::RateSteps);
+        let time = &mut self.flown[kind as usize];
+        *time += 1;
+        Plan::new(kind, *time - 1, view, &self.limits, &mut self.rng)
+    }
+}
+
+impl Phase {
+    /// What the phase asks for, `Some(None)` for resting on the ground, or `None` where it is over.
+    fn demand(&mut self, now: &Now, rng: &mut Sequence) -> Option<Option<Demand>> {
+        let view = now.view;
+        let over = view.time > now.limits.seconds - LANDING_S || view.voltage < now.limits.empty_v;
+        let demand = match self {
+            Phase::Ground if now.time < GROUND_S => return Some(None),
+            Phase::Ground => None,
+            Phase::Landed => return Some(None),
+            Phase::Landing if view.position.z < TOUCH_M => None,
+            Phase::Landing => Some(Demand::at(Vector3::new(0.0, 0.0, -(0.5 + 0.4 * view.position.z).min(9.0)))),
+            _ if over => None,
+            Phase::TakeOff if view.position.z > TAKEN_OFF_M => None,
+            Phase::TakeOff => Some(Demand::at(Vector3::new(0.0, 0.0, 4.0))),
+            Phase::Approach(plan) => plan.approach(now),
+            Phase::Manoeuvre(plan) if !plan.low && bounds::leaves(view, now.limits) => None,
+            Phase::Manoeuvre(plan) => plan.script.demand(now, rng),
+        };
+        demand.map(Some)
+    }
+}

@@ -1,0 +1,5 @@
+//! What flights say: whether a log is fit to learn from, the vehicle in it, and what the compact model gets wrong.
+
+pub mod diagnose;
+pub mod identify;
+pub mod quality;

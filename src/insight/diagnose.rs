@@ -1,0 +1,202 @@
+//! What the simulation gets wrong, and why: from the residuals of flights to the effects that explain them.
+//!
+//! Flights are predicted by the simulator's own equations ([`predict`]) and held against the measurement by channel ([`problem`]). Every effect of the
+//! catalogue is a direction in which the prediction could change; a score test ranks them beside what the compact model's own numbers could take up
+//! ([`gram`], [`select`]), the best are fitted ([`fit`]), and what is found has to be evident, replicated, of a size that matters ([`judge`]) and
+//! complete: nothing structured may be left ([`structure`]).
+
+// Samples, axes and channels index several arrays at once here.
+#![allow(clippy::needless_range_loop)]
+
+pub mod adequacy;
+pub mod columns;
+pub mod drift;
+pub mod extend;
+pub mod figures;
+pub mod finding;
+pub mod fit;
+pub mod gain;
+pub mod gram;
+pub mod horizon;
+pub mod judge;
+pub mod kinematics;
+pub mod model;
+pub mod place;
+pub mod plan;
+pub mod predict;
+pub mod problem;
+pub mod random;
+pub mod rank;
+pub mod record;
+pub mod respond;
+pub mod ringing;
+pub mod select;
+pub mod settle;
+pub mod skew;
+pub mod structure;
+pub mod trial;
+pub mod whiten;
+
+use crate::base::stats::mean;
+use crate::insight::identify::data::Data;
+use crate::insight::quality::Quality;
+use crate::model::effects;
+use crate::model::vehicle::Vehicle;
+use finding::{Diagnosis, Finding, Residual, Status, Verdict};
+use judge::{Judge, Judged};
+use model::Model;
+use problem::Problem;
+use record::Record;
+use select::{Added, Selection};
+use std::collections::BTreeMap;
+use structure::NAMES;
+
+/// What the diagnosis is busy with: called before each step with its name and the share done so far.
+pub type Watch<'a> = &'a mut dyn FnMut(&str, f64);
+
+/// Flights and their diagnosis, with all that a report needs.
+pub struct Diagnosed {
+    pub diagnosis: Diagnosis,
+    /// The base vehicle with what was found.
+    pub vehicle: Vehicle,
+    pub problem: Problem,
+    pub selection: Selection,
+}
+
+/// Flights, ready to be held against `vehicle`.
+pub fn problem(logs: Vec<Quality>, vehicle: &Vehicle) -> Problem {
+    let data = Data::new(logs);
+    let one = |f| Record::new(f, record::full_rate(vehicle, &f.quality));
+    let records: Vec<Record> = data.flights.iter().map(one).collect();
+    let begin: Vec<f64> =
+        records.iter().map(|r| r.volts.first().map_or(vehicle.battery.full_v, |first| first.1)).collect();
+    let mut model = Model::new(vehicle, &begin);
+    if records.iter().all(|r| r.from_rotors) {
+        model.forget_voltage();
+    }
+    Problem::new(model, records)
+}
+
+/// Diagnoses flights of a vehicle that is thought to be `vehicle`.
+pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnosed {
+    watch("predicting", 0.02);
+    let usable_s = logs.iter().map(|q| crate::flight::spans::length(&q.usable)).sum();
+    let problem = problem(logs, vehicle);
+    let mut selection = select::select(&problem, watch);
+    settle::clocks(&problem, &mut selection);
+    let lost = settle::chance(&problem, &mut selection);
+    watch("judging", 0.85);
+    let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
+    let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
+    let judge = Judge::new(&problem, &selection);
+    let mut judged: Vec<Judged> = selection.added.iter().map(|a| judge.judge(a)).filter(|j| j.material).collect();
+    judged.extend(biases(&judge));
+    let mut findings: Vec<Finding> = judged.iter().map(|j| j.finding.clone()).collect();
+    if let (Some(lost), Some(finding)) = (lost, findings.iter_mut().find(|f| f.effect == "command_dropout")) {
+        finding.counted(&lost);
+    }
+    let placed = structure.iter().any(|s| s.along == Some(structure::PLACE));
+    let force_structure = structure.iter().filter(|s| s.channel.starts_with("specific force")).map(|s| s.structure_rms);
+    if !placed {
+        findings.extend(random::gusts(&problem, &selection, force_structure.fold(0.0, f64::max)));
+    }
+    let (drift, cause) = drift::find(&judge);
+    findings.extend(cause);
+    let unexplained = adequacy::unexplained(&structure, &findings, &selection);
+    let all = findings.clone();
+    for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected) {
+        let bounded = judged.iter().any(|j| j.bounded && j.finding.effect == finding.effect);
+        if let Some(why) = adequacy::doubt(finding, bounded, &all, &structure, &unexplained) {
+            (finding.status, finding.why) = (Status::Suspected, Some(why));
+        }
+    }
+    for finding in findings.iter_mut().filter(|f| placed && f.effect == "steady_wind") {
+        finding.status = Status::Suspected;
+        finding.why = Some("the wind is not the same everywhere".into());
+    }
+    // A move of the base explains nothing where its channel still has structure.
+    let open = unexplained.iter().any(|s| s.channel == "specific force z");
+    for finding in findings.iter_mut().filter(|f| open && f.explained.contains_key(drift::MOVES)) {
+        finding.status = Status::Suspected;
+        finding.why = Some("structure remains in specific force z".into());
+    }
+    watch("measuring the gain", 0.9);
+    // What is only suspected is no part of the extended vehicle.
+    let suspected: Vec<&str> = findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
+    let doubted = selection.added.iter().any(|a| suspected.contains(&a.card.id));
+    let kept = doubted.then(|| selection.without(&problem, &suspected));
+    let kept = kept.as_ref().unwrap_or(&selection);
+    let held = gain::measure(&problem, &selection, kept);
+    for finding in &mut findings {
+        let one = judged.iter().find(|j| j.finding.effect == finding.effect);
+        let is_held = finding.status != Status::Suspected;
+        let all = one.map_or(held.channels.clone(), |j| held.of_one(&problem, &j.change, is_held));
+        finding.gain = all.into_iter().filter(|(c, _)| finding.explained.contains_key(c)).collect();
+    }
+    findings.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+    let verdict = match (unexplained.is_empty(), findings.is_empty()) {
+        (false, _) => Verdict::Unexplained,
+        (true, true) => Verdict::Clean,
+        (true, false) => Verdict::Effects,
+    };
+    let (detectable, not_detectable) = plan::judge(&problem, &selection.reach);
+    let extended = extend::vehicle(&Judge::new(&problem, kept), &findings);
+    let diagnosis = Diagnosis {
+        verdict,
+        logs: problem.records.iter().map(|r| r.name.clone()).collect(),
+        base: vehicle.name.clone(),
+        usable_s,
+        findings,
+        unexplained,
+        not_detectable,
+        detectable,
+        drift,
+        residuals: residuals(&problem, &selection),
+        held_out: held.channels,
+        horizons: held.horizons,
+        captured: held.captured,
+        structure_before: before,
+        structure,
+    };
+    Diagnosed { diagnosis, vehicle: extended, problem, selection }
+}
+
+/// By impact; what is only suspected comes last.
+fn rank(finding: &Finding) -> f64 {
+    finding.impact + if finding.status == Status::Suspected { 0.0 } else { 1e6 }
+}
+
+/// Constant errors of the IMU, which every fit allows for.
+fn biases(judge: &Judge) -> Vec<Judged> {
+    // Larger than what any such sensor has, by a share of the smallest size that is one.
+    const SHARE: f64 = 0.8;
+    let point = &judge.selection.point;
+    let seen = |first: usize| !judge.problem.rows[first].is_empty();
+    let mut out = Vec::new();
+    for (id, channel) in [("gyro_bias", 6), ("accel_bias", 9)] {
+        let Some(card) = effects::card(id) else { continue };
+        let size = model::span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
+        if seen(channel) && size > SHARE * card.parameters[0].typical[0] {
+            out.push(judge.judge(&Added { card, ties: Vec::new() }));
+        }
+    }
+    out
+}
+
+fn residuals(problem: &Problem, selection: &Selection) -> BTreeMap<&'static str, Residual> {
+    let mut out = BTreeMap::new();
+    for (c, (name, unit)) in NAMES.into_iter().enumerate() {
+        let (base, now) = (&selection.base.residual[c], &selection.point.residual[c]);
+        if base.is_empty() {
+            continue;
+        }
+        let rms = |r: &[f64]| mean(&r.iter().map(|x| x * x).collect::<Vec<_>>()).sqrt();
+        let middle = mean(&problem.measured[c]);
+        let variance = mean(&problem.measured[c].iter().map(|m| (m - middle).powi(2)).collect::<Vec<_>>()).max(1e-300);
+        let (before, after) = (rms(base), rms(now));
+        let noise = selection.whitener.sd(c);
+        let (r2_before, r2_after) = (1.0 - before * before / variance, 1.0 - after * after / variance);
+        out.insert(name, Residual { before, after, noise, unit, r2_before, r2_after });
+    }
+    out
+}

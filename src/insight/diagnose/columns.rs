@@ -1,0 +1,134 @@
+//! Directions in which the prediction could change, and by how much each changes it.
+
+use super::fit::Point;
+use super::model::{BEGIN, DISCHARGE, Stage, cards, span};
+use super::problem::{Problem, Values};
+use super::trial::rivals;
+use super::whiten::Whitener;
+use crate::model::effects::{Card, Kind};
+use rayon::prelude::*;
+
+/// A way to begin with an effect: numbers and their values.
+#[derive(Clone, Debug)]
+pub struct Direction {
+    pub card: &'static Card,
+    pub start: Vec<(usize, f64)>,
+}
+
+/// A direction with the change of the prediction that it makes, plain and whitened.
+pub struct Column {
+    pub direction: Direction,
+    pub change: Values,
+    pub white: Values,
+}
+
+impl Column {
+    pub fn card(&self) -> &'static Card {
+        self.direction.card
+    }
+}
+
+/// The numbers of the compact model and of constant sensor errors that the flights tell anything about.
+pub fn base_numbers(problem: &Problem) -> Vec<usize> {
+    let biases = ["gyro_bias", "accel_bias"].into_iter().filter_map(crate::model::effects::card).flat_map(span);
+    let volts = BEGIN..problem.model.numbers.len();
+    let own = cards().flat_map(span).filter(|&k| problem.model.base[k] != 0.0);
+    let mut all: Vec<usize> = (0..=DISCHARGE).chain(biases).chain(volts).chain(own).collect();
+    all.sort_unstable();
+    all.dedup();
+    let state = problem.predict(&problem.model.base);
+    all.retain(|&k| problem.model.numbers[k].high > problem.model.numbers[k].low);
+    all.retain(|&k| !problem.slope(&state, &problem.model.base, k).iter().all(Vec::is_empty));
+    all
+}
+
+/// Ways to begin with an effect: one size where it is linear, several where a large one looks unlike a small one.
+pub fn directions(card: &'static Card) -> Vec<Direction> {
+    let at = span(card);
+    let sizes = |i: usize| {
+        let [small, large] = card.parameters[i].typical;
+        [small, (small * large).sqrt(), large]
+    };
+    let numbers: Vec<usize> = at.collect();
+    let shape = card.parameters.iter().position(|p| p.name == "tau" && card.parameters.len() > 1);
+    if let Some(shape) = shape {
+        let [small, _, large] = sizes(shape);
+        let grid = (0..4).map(|i| small * (large / small).powf(f64::from(i) / 3.0));
+        let main = 1 - shape;
+        return grid
+            .map(|tau| Direction { card, start: vec![(numbers[main], sizes(main)[1]), (numbers[shape], tau)] })
+            .collect();
+    }
+    if card.parameters.len() > 1 {
+        return numbers.iter().enumerate().map(|(i, &k)| Direction { card, start: vec![(k, sizes(i)[0])] }).collect();
+    }
+    let signs: &[f64] = if card.parameters[0].low < 0.0 { &[1.0, -1.0] } else { &[1.0] };
+    let shifts = card.kind == Kind::Timing || card.id == "propwash" || card.kind == Kind::Sensor;
+    let wanted = if shifts { 4 - signs.len() } else { 1 };
+    let sizes = sizes(0).into_iter().take(wanted);
+    sizes
+        .flat_map(|s| signs.iter().map(move |sign| sign * s))
+        .map(|s| Direction { card, start: vec![(numbers[0], s)] })
+        .collect()
+}
+
+/// Candidates: effects whose mean can be seen, that the base does not already hold.
+pub fn candidates(problem: &Problem) -> Vec<&'static Card> {
+    let in_base = |card: &Card| span(card).any(|k| problem.model.base[k] != 0.0);
+    let bias = |card: &Card| matches!(card.id, "gyro_bias" | "accel_bias");
+    let one_clock = problem.records.iter().all(|r| r.one_clock);
+    cards()
+        .filter(|card| !(one_clock && card.id == "clock_skew"))
+        .filter(|card| card.id != "gusts" && !bias(card) && !in_base(card))
+        .collect()
+}
+
+/// The columns of all directions; those that change nothing are left out.
+pub fn columns(problem: &Problem, whitener: &Whitener, point: &Point, cards: &[&'static Card]) -> Vec<Column> {
+    let mut all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
+    if let Some(card) = cards.iter().find(|card| card.id == "clock_skew")
+        && let Some(skew) = super::skew::estimate(problem, &point.state, &point.residual)
+        && skew.abs() > 0.5 * card.parameters[0].typical[0]
+    {
+        // Nothing else would come near.
+        all.retain(|d| d.card.id != card.id);
+        all.push(Direction { card, start: vec![(span(card).start, skew)] });
+    }
+    let one = |d: Direction| {
+        let change = problem.secant(&point.state, &point.x, &d.start, 1.0);
+        let finite = change.iter().flatten().all(|x| x.is_finite());
+        let white = whitener.apply(&change, &problem.rows);
+        (finite && !change.iter().all(Vec::is_empty)).then_some(Column { direction: d, change, white })
+    };
+    all.into_par_iter().filter_map(one).collect()
+}
+
+/// The columns after the last of `held` was added: made anew where it moved in time or in voltage what they change, and of the causes that were tied with
+/// it; else as they were.
+pub fn renewed(
+    problem: &Problem,
+    whitener: &Whitener,
+    point: &Point,
+    held: &[&'static Card],
+    tied: &[(&'static Card, f64)],
+    mut found: Vec<Column>,
+) -> Vec<Column> {
+    let Some(last) = held.last() else { return found };
+    found.retain(|c| c.card().id != last.id);
+    let of = |card: &Card| span(card).map(|k| &problem.model.numbers[k]);
+    let early = of(last).any(|n| n.stage <= Stage::Battery);
+    let (rates, forces) = (of(last).any(|n| n.rates), of(last).any(|n| n.forces));
+    let stale = |c: &Column| {
+        early && of(c.card()).any(|n| rates && n.rates || forces && n.forces)
+            || tied.iter().any(|(card, _)| card.id == c.card().id)
+            || rivals(last, c.card())
+    };
+    found.par_iter_mut().filter(|c| stale(c)).for_each(|c| {
+        let change = problem.secant(&point.state, &point.x, &c.direction.start, 1.0);
+        if change.iter().flatten().all(|x| x.is_finite()) {
+            c.white = whitener.apply(&change, &problem.rows);
+            c.change = change;
+        }
+    });
+    found
+}

@@ -1,0 +1,131 @@
+//! What the effects are worth on flight that was not used for fitting: the last flight where there are several, else the last 30 % of the time.
+
+use super::finding::{Ahead, Gain};
+use super::fit::{self, Point};
+use super::horizon;
+use super::model::{BEGIN, Number};
+use super::predict::CHANNELS;
+use super::problem::Problem;
+use super::select::{self, Selection};
+use super::structure::NAMES;
+use super::whiten::Whitener;
+use crate::base::stats::mean;
+use crate::insight::identify::data::TRAIN_SHARE;
+use std::collections::BTreeMap;
+
+/// Whitened squares over those that are left at least, from which on there is something to gain.
+const WORTH: f64 = 1.05;
+
+/// Base and extended model, fitted on one part of the flight and judged on the other.
+pub struct HeldOut {
+    pub channels: BTreeMap<&'static str, Gain>,
+    pub horizons: Vec<Ahead>,
+    /// Share of the achievable fall of the whitened squares; none where there is nothing to gain.
+    pub captured: Option<f64>,
+    extended: Point,
+    out: Vec<bool>,
+}
+
+impl HeldOut {
+    /// What one effect is worth beside the others: the extended model against itself without that effect, whose absence moves the numbers by `change`.
+    /// An effect that is only suspected is not in the extended model: there it is added.
+    pub fn of_one(&self, problem: &Problem, change: &[f64], held: bool) -> BTreeMap<&'static str, Gain> {
+        let sign = if held { 1.0 } else { -1.0 };
+        let moved = |((x, by), n): ((&f64, &f64), &Number)| (x + sign * by).clamp(n.low, n.high);
+        let x: Vec<f64> = self.extended.x.iter().zip(change).zip(&problem.model.numbers).map(moved).collect();
+        let state = problem.predict(&x);
+        let residual = problem.residuals(&state);
+        let other = Point { x, state, free: Vec::new(), white: Vec::new(), residual, cost: Vec::new() };
+        let [without, with] = if held { [&other, &self.extended] } else { [&self.extended, &other] };
+        let mut all = channels(problem, without, with, &self.out);
+        all.retain(|_, gain| gain.before.is_finite() && gain.after.is_finite());
+        all
+    }
+}
+
+/// Whether each stretch of time is held out.
+fn held_out(problem: &Problem) -> Vec<bool> {
+    let mut out = vec![false; problem.blocks];
+    let last = problem.records.len() - 1;
+    let blocks: Vec<u32> = problem.records[last].block.clone();
+    let (Some(&first), Some(&end)) = (blocks.first(), blocks.last()) else { return out };
+    let from = if last > 0 { first } else { first + ((end - first) as f64 * TRAIN_SHARE) as u32 };
+    (from..=end).for_each(|b| out[b as usize] = true);
+    out
+}
+
+/// Fits on the one part, predicts the other: the base, and what is `kept` of the `selection`. What could be gained at most is what all that was tried would.
+pub fn measure(problem: &Problem, selection: &Selection, kept: &Selection) -> HeldOut {
+    let out = held_out(problem);
+    let train = selection.whitener.without(&problem.rows, &out);
+    let test = selection.whitener.without(&problem.rows, &out.iter().map(|o| !o).collect::<Vec<_>>());
+    let base = fit::fit(problem, &train, &selection.base.x, &selection.base.free);
+    let extended =
+        if kept.added.is_empty() { base.clone() } else { fit::fit(problem, &train, &kept.point.x, &kept.point.free) };
+    // A flight that was held out as a whole has not told yet with which voltage it began.
+    let last = problem.records.len() - 1;
+    let (base, extended) = if last > 0 {
+        let begin = [BEGIN + last];
+        let settled = |p: Point| {
+            let free = p.free.clone();
+            Point { free, ..fit::fit(problem, &test, &p.x, &begin) }
+        };
+        (settled(base), settled(extended))
+    } else {
+        (base, extended)
+    };
+    let squares = |p: &Point| fit::costs(problem, &test.apply(&p.residual, &problem.rows)).iter().sum::<f64>();
+    let (before, after) = (squares(&base), squares(&extended));
+    let floor = after - select::left_to_gain(problem, &test, &extended, selection);
+    let captured = (before > WORTH * floor).then(|| (before - after) / (before - floor).max(1e-9));
+    HeldOut {
+        channels: channels(problem, &base, &extended, &out),
+        horizons: horizons(problem, &base, &extended, &out),
+        captured: captured.map(|c| c.min(1.0)),
+        extended,
+        out,
+    }
+}
+
+fn channels(problem: &Problem, base: &Point, extended: &Point, out: &[bool]) -> BTreeMap<&'static str, Gain> {
+    let mut all = BTreeMap::new();
+    for c in 0..CHANNELS {
+        let rows: Vec<usize> = (0..problem.rows[c].len()).filter(|&i| out[problem.rows[c][i].block as usize]).collect();
+        if rows.len() < 20 || base.residual[c].is_empty() {
+            continue;
+        }
+        let rms = |p: &Point| mean(&rows.iter().map(|&i| p.residual[c][i].powi(2)).collect::<Vec<_>>()).sqrt();
+        let measured: Vec<f64> = rows.iter().map(|&i| problem.measured[c][i]).collect();
+        let middle = mean(&measured);
+        let variance = mean(&measured.iter().map(|m| (m - middle).powi(2)).collect::<Vec<_>>());
+        let (before, after) = (rms(base), rms(extended));
+        let r2 = |e: f64| 1.0 - e * e / variance.max(1e-300);
+        let (name, unit) = NAMES[c];
+        all.insert(name, Gain { before, after, r2_before: r2(before), r2_after: r2(after), unit });
+    }
+    all
+}
+
+fn horizons(problem: &Problem, base: &Point, extended: &Point, out: &[bool]) -> Vec<Ahead> {
+    let f = problem.records.len() - 1;
+    let record = &problem.records[f];
+    let wanted = |i: usize| out[record.block[i] as usize];
+    let at = |p: &Point| horizon::errors(&problem.model, record, &p.state[f], &p.x, &wanted);
+    let pairs = at(base).into_iter().zip(at(extended));
+    pairs.filter(|(b, _)| b.starts > 0).map(|(before, after)| Ahead { before, after }).collect()
+}
+
+impl Whitener {
+    /// The same, deaf to the stretches of time that are `out`.
+    pub fn without(&self, rows: &[Vec<super::problem::Row>; CHANNELS], out: &[bool]) -> Self {
+        let mut copy = self.clone();
+        for (c, weights) in copy.weights_mut().iter_mut().enumerate() {
+            for (row, weight) in rows[c].iter().zip(weights.iter_mut()) {
+                if out[row.block as usize] {
+                    *weight = 0.0;
+                }
+            }
+        }
+        copy
+    }
+}

@@ -1,0 +1,277 @@
+//! What the model says the sensors of a flight should have read: the same stages as the simulator's, driven by the log.
+
+use super::kinematics::{self, in_world, lagged, slopes, vector};
+use super::model::{BEGIN, Model, Stage};
+use super::record::Record;
+use super::respond::{Responses, respond, spin, supplied};
+use crate::base::lane::{Kernel, Lane32, Level, build, dispatch};
+use crate::flight::lowpass::LowPass;
+use crate::flight::series::period;
+use crate::model::attitude::{compose, dot};
+use crate::model::dynamics::Parameters;
+use crate::model::dynamics::battery::discharged;
+use crate::model::dynamics::extended::{self, Moment};
+use crate::model::effects::{self, Channel, Sensed};
+use std::sync::Arc;
+
+/// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
+const VOLTAGE_HZ: f64 = 0.5;
+
+/// Channels of the residual: rates, specific force, turns and pushes along x, y, z, and the voltage.
+pub const CHANNELS: usize = 13;
+pub const RATE: usize = 0;
+pub const FORCE: usize = 3;
+pub const TURN: usize = 6;
+pub const PUSH: usize = 9;
+pub const VOLTAGE: usize = 12;
+
+/// What a channel compares.
+pub fn kind(channel: usize) -> Channel {
+    [Channel::Rate, Channel::Force, Channel::Turn, Channel::Push, Channel::Voltage][channel / 3]
+}
+
+/// One flight, predicted; every stage is kept and shared, so that a number late in the chain is cheap to change.
+#[derive(Clone, Debug, Default)]
+pub struct Predicted {
+    /// Filtered commands, and the share that each rate lags, summed.
+    command: Arc<Vec<[f64; 4]>>,
+    lag: Arc<Vec<f64>>,
+    /// What the filtered commands go to, and how fast those of the rates change.
+    asked: Arc<Vec<([f64; 4], [f64; 3])>>,
+    /// Body rates, and those that the gyro's late samples show.
+    pub rates: Arc<Vec<[f64; 3]>>,
+    seen_rates: Arc<Vec<[f64; 3]>>,
+    /// At the terminals, modelled and as thrust sees it, V.
+    pub modelled_v: Arc<Vec<f64>>,
+    pub voltage: Arc<Vec<f64>>,
+    /// Specific force, m/s2.
+    pub force: Arc<Vec<[f64; 3]>>,
+    /// By channel, in the units of [`Record`]; empty where the log lacks it.
+    pub channels: [Arc<Vec<f64>>; CHANNELS],
+}
+
+/// What of a prediction has to be made again.
+#[derive(Clone, Copy, Debug)]
+pub struct Anew {
+    /// From where on.
+    pub stage: Stage,
+    /// Whether only body rates change, or only what is about thrust and drag.
+    pub rates: bool,
+    pub forces: bool,
+    /// Whether the readings of the IMU are corrected in another way.
+    pub corrections: bool,
+}
+
+impl Anew {
+    pub const ALL: Anew = Anew { stage: Stage::Response, rates: true, forces: true, corrections: true };
+}
+
+impl Predicted {
+    /// Filtered thrust command at a sample, -1..1.
+    pub fn thrust(&self, i: usize) -> f64 {
+        self.command[i][3]
+    }
+
+    /// Sum over the axes of |command - response| at a sample.
+    pub fn lag(&self, i: usize) -> f64 {
+        self.lag[i]
+    }
+
+    /// Predicts `record`, number `flight`, at `x`.
+    pub fn new(model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
+        Self::default().anew(Anew::ALL, model, record, flight, x)
+    }
+
+    /// The same at other numbers, which change no more than `what`.
+    pub fn changed(&self, what: Anew, model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
+        self.clone().anew(what, model, record, flight, x)
+    }
+
+    fn anew(self, what: Anew, model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
+        dispatch(Level::best(), Remake { from: self, what, model, record, flight, x })
+    }
+
+    #[inline(always)]
+    fn remade(mut self, what: Anew, model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
+        let p = model.parameters(x);
+        let stage = what.stage;
+        if stage <= Stage::Response {
+            let Responses { command, lag, asked } = respond(&p, record, model, x, 0.0);
+            (self.command, self.lag, self.asked) = (command.into(), lag.into(), asked.into());
+        }
+        if stage <= Stage::Spin && what.rates {
+            let offset = model.of(x, "stream_offset", "offset");
+            self.rates = spin(&p, record, &self.command).into();
+            self.seen_rates = if offset == 0.0 {
+                self.rates.clone()
+            } else {
+                spin(&p, record, &respond(&p, record, model, x, offset).command).into()
+            };
+        }
+        if stage <= Stage::Battery && what.forces {
+            self.discharge(&p, record, x[BEGIN + flight]);
+        }
+        if stage <= Stage::Force && what.forces {
+            self.push(&p, record, model.of(x, "velocity_lag", "tau"), model.vehicle().gravity_m_s2);
+        }
+        self.sense(&p, what, model, record, x);
+        if what.corrections {
+            let all = kinematics::integrate(model, record, x, &self.command);
+            all.into_iter().enumerate().for_each(|(c, values)| self.channels[TURN + c] = values.into());
+        }
+        if stage <= Stage::Battery && what.forces {
+            self.channels[VOLTAGE] = record.volts.iter().map(|(i, _)| self.modelled_v[*i]).collect::<Vec<_>>().into();
+        }
+        self
+    }
+
+    /// Modelled voltage, and that with its slow error taken off, which thrust sees.
+    #[inline(always)]
+    fn discharge(&mut self, p: &Parameters<f64>, record: &Record, begin_v: f64) {
+        let n = record.time.len();
+        if record.volts.is_empty() {
+            (self.modelled_v, self.voltage) = (vec![0.0; n].into(), vec![0.0; n].into());
+            return;
+        }
+        let since = record.since();
+        let mut polarisation = 0.0;
+        let mut before = since;
+        let mut modelled = Vec::with_capacity(n);
+        for (i, &t) in record.time.iter().enumerate() {
+            let open = discharged(begin_v, p.voltage_rate, t - since);
+            let command = if self.command[i][3].is_finite() { self.command[i][3] } else { -1.0 };
+            let (v, next) = extended::terminal(p, open, command, polarisation, (t - before).max(0.0));
+            (polarisation, before) = (next, t.max(since));
+            modelled.push(v);
+        }
+        let mut error: Vec<f64> = record.voltage.iter().zip(&modelled).map(|(m, v)| m - v).collect();
+        if let Some(filter) = LowPass::new(VOLTAGE_HZ, period(&record.time)) {
+            filter.run(&mut error);
+        }
+        self.voltage = modelled.iter().zip(error).map(|(v, e)| v + e).collect::<Vec<_>>().into();
+        self.modelled_v = modelled.into();
+    }
+
+    /// Specific force. A velocity that lags by `tau` is taken as what it will be.
+    #[inline(always)]
+    fn push(&mut self, p: &Parameters<f64>, record: &Record, tau: f64, gravity: f64) {
+        let since = record.since();
+        let mut out = Vec::with_capacity(record.time.len());
+        let force = |i: usize| -> [f64; 3] { build!(|k| record.fine.imu[3 + k][i]) };
+        let late = if tau > 0.0 { Some(lagged(record, tau, force)) } else { None };
+        for i in 0..record.time.len() {
+            let mut velocity: [f64; 3] = build!(|k| record.velocity[k][i]);
+            if let Some(late) = &late {
+                let mut gains = late[i * record.fine.every];
+                gains[2] -= gravity;
+                for k in 0..3 {
+                    velocity[k] += tau * dot(record.axes[i][k], gains);
+                }
+            }
+            let moment = Moment {
+                command: self.command[i][3],
+                voltage: self.voltage[i],
+                axes: record.axes[i],
+                velocity,
+                rates: self.rates[i],
+                height: record.height[i],
+                rate_error: self.lag[i],
+                elapsed: record.time[i] - since,
+            };
+            out.push(extended::force(p, &moment));
+        }
+        self.force = out.into();
+    }
+
+    /// Readings, averaged over bins.
+    #[inline(always)]
+    fn sense(&mut self, p: &Parameters<f64>, what: Anew, model: &Model, record: &Record, x: &[f64]) {
+        let k = model.sensors(x);
+        let arm = ["rx", "ry", "rz"].iter().any(|side| model.of(x, "imu_lever_arm", side) != 0.0);
+        let acceleration = if arm { self.turning(p, record) } else { vec![[0.0; 3]; record.time.len()] };
+        let known =
+            |c: usize| if c < 3 { record.commanded[0] } else { record.commanded[1] && (record.moves || c == 5) };
+        let wanted = |c: usize| known(c) && if c < 3 { what.rates } else { what.forces };
+        let mut means: [Vec<f64>; 6] = Default::default();
+        for &[from, to] in &record.bins {
+            let mut sum = [0.0; 6];
+            for i in from..to {
+                let throttle = extended::throttle(self.command[i][3]);
+                let (rates, force) = (self.rates[i], self.force[i]);
+                let mut sensed = Sensed { rates, acceleration: acceleration[i], force, throttle };
+                effects::sense(k, &mut sensed);
+                for j in 0..3 {
+                    // The gyro's own lateness, on top of what the sensor makes of it.
+                    sum[j] += sensed.rates[j] - rates[j] + self.seen_rates[i][j];
+                    sum[3 + j] += sensed.force[j];
+                }
+            }
+            (0..6).filter(|&c| wanted(c)).for_each(|c| means[c].push(sum[c] / (to - from) as f64));
+        }
+        for (c, mean) in means.into_iter().enumerate() {
+            if wanted(c) {
+                self.channels[c] = mean.into();
+            }
+        }
+    }
+
+    /// Angular acceleration, rad/s2: what the response does at each moment, for it is over in a few samples.
+    #[inline(always)]
+    fn turning(&self, p: &Parameters<f64>, record: &Record) -> Vec<[f64; 3]> {
+        const MOMENT_S: f64 = 1e-5;
+        if !record.commanded[0] {
+            return slopes(&record.time, &self.rates);
+        }
+        let mut out = Vec::with_capacity(record.time.len());
+        for i in 0..record.time.len() {
+            let (sent, slope) = self.asked[i];
+            let voltage = supplied(p, record, i);
+            let (next, _) = extended::respond(p, self.command[i], slope, sent, voltage, MOMENT_S);
+            let (now, next) = (extended::spin(p, self.command[i]), extended::spin(p, next));
+            out.push(build!(|k| (next[k] - now[k]) / MOMENT_S));
+        }
+        out
+    }
+}
+
+/// A fused multiply-add is an instruction below a kernel, and a call of a function elsewhere.
+struct Remake<'a> {
+    from: Predicted,
+    what: Anew,
+    model: &'a Model,
+    record: &'a Record,
+    flight: usize,
+    x: &'a [f64],
+}
+
+impl Kernel for Remake<'_> {
+    type Output = Predicted;
+
+    #[inline(always)]
+    fn run<L: Lane32>(self) -> Predicted {
+        self.from.remade(self.what, self.model, self.record, self.flight, self.x)
+    }
+}
+
+/// What was measured, in the layout of [`Predicted::channels`].
+pub fn measured(record: &Record, gravity: f64) -> [Vec<f64>; CHANNELS] {
+    let mut out: [Vec<f64>; CHANNELS] = Default::default();
+    for (c, channel) in out.iter_mut().enumerate().take(6) {
+        let mean = |&[from, to]: &[usize; 2]| (from..to).map(|i| record.imu[c][i]).sum::<f64>() / (to - from) as f64;
+        *channel = record.bins.iter().map(mean).collect();
+    }
+    for &[from, to] in &record.windows {
+        let [w, a, b, c] = record.attitude[from];
+        let turn = vector(compose([w, -a, -b, -c], record.attitude[to]));
+        let velocity = |i: usize| in_world(&record.axes[i], std::array::from_fn(|k| record.velocity[k][i]));
+        let (v0, v1) = (velocity(from), velocity(to));
+        let mut gained: [f64; 3] = std::array::from_fn(|k| v1[k] - v0[k]);
+        gained[2] += gravity * (record.time[to] - record.time[from]);
+        for k in 0..3 {
+            out[TURN + k].push(turn[k]);
+            out[PUSH + k].push((0..3).map(|j| record.axes[from][k][j] * gained[j]).sum());
+        }
+    }
+    out[VOLTAGE] = record.volts.iter().map(|(_, v)| *v).collect();
+    out
+}

@@ -1,0 +1,77 @@
+//! Whether the clocks of commands and sensors run apart: the offset between simulated and measured rates, followed through the flight. A fit would not find
+//! it, because after a minute the two have nothing in common any more.
+
+use super::predict::RATE;
+use super::problem::{Problem, State, Values};
+use super::record::BIN_S;
+use crate::base::stats::median;
+
+/// Length of the stretches that are compared, s, and the largest skew looked for.
+const WINDOW_S: f64 = 6.0;
+const MOST: f64 = 0.025;
+/// Least correlation at which an offset is believed.
+const LIKE: f64 = 0.5;
+
+/// Skew of the sensors' clock, as a share, if the rates can tell; from the prediction `state` and what was measured less it.
+pub fn estimate(problem: &Problem, state: &State, residual: &Values) -> Option<f64> {
+    let mut slopes = Vec::new();
+    for f in 0..state.len() {
+        let rows = &problem.rows[RATE];
+        let bins = problem.records[f].bins.len();
+        if bins < 2000 || state[f].channels[RATE].is_empty() {
+            continue;
+        }
+        // By axis and bin: predicted and measured.
+        let mut series = [[vec![0.0; bins], vec![0.0; bins]], [vec![0.0; bins], vec![0.0; bins]]];
+        for (axis, pair) in series.iter_mut().enumerate() {
+            for (i, row) in rows.iter().enumerate().filter(|(_, row)| row.flight as usize == f) {
+                let predicted = state[f].channels[RATE + axis][row.index as usize];
+                pair[0][row.index as usize] = predicted;
+                pair[1][row.index as usize] = predicted + residual[RATE + axis][i];
+            }
+        }
+        let window = (WINDOW_S / BIN_S) as usize;
+        let begin = problem.records[f].time[problem.records[f].bins[0][0]];
+        let (mut skew, mut points): (f64, Vec<(f64, f64)>) = (0.0, Vec::new());
+        let mut reach = MOST * (begin + 2.0 * WINDOW_S) / BIN_S;
+        for from in (0..bins.saturating_sub(window)).step_by(window) {
+            let time = problem.records[f].time[problem.records[f].bins[from + window / 2][0]];
+            let expected = (skew * time / BIN_S) as i64;
+            let range = expected - reach as i64..=expected + reach as i64;
+            let best = range
+                .map(|lag| (alike(&series, from, window, lag), lag))
+                .max_by(|a, b| a.0.total_cmp(&b.0))
+                .filter(|(like, _)| *like > LIKE);
+            if let Some((_, lag)) = best {
+                points.push((time, lag as f64 * BIN_S));
+                let ratios: Vec<f64> = points.iter().filter(|p| p.0 > 0.3 * time).map(|p| p.1 / p.0).collect();
+                skew = median(&ratios);
+                // Known to a bin or two over the time so far; ahead lies one more window.
+                reach = (4.0 + MOST * WINDOW_S / BIN_S * 0.3).min(MOST * WINDOW_S / BIN_S);
+            }
+        }
+        // A delay shifts all windows alike: what grows is told by windows half a flight apart.
+        let half = points.len() / 2;
+        let grown = |(a, b): (&(f64, f64), &(f64, f64))| (b.1 - a.1) / (b.0 - a.0);
+        if half > 5 {
+            slopes.push(median(&points.iter().zip(&points[half..]).map(grown).collect::<Vec<_>>()));
+        }
+    }
+    (!slopes.is_empty()).then(|| median(&slopes))
+}
+
+/// Correlation of what is predicted in a window with what was measured `lag` bins later, over both axes.
+fn alike(series: &[[Vec<f64>; 2]; 2], from: usize, window: usize, lag: i64) -> f64 {
+    let (mut xy, mut xx, mut yy) = (0.0, 0.0, 0.0);
+    for [predicted, measured] in series {
+        for i in (from..from + window).step_by(2) {
+            let j = i as i64 + lag;
+            if j < 0 || j as usize >= measured.len() {
+                return -1.0;
+            }
+            let (x, y) = (predicted[i], measured[j as usize]);
+            (xy, xx, yy) = (xy + x * y, xx + x * x, yy + y * y);
+        }
+    }
+    if xx > 0.0 && yy > 0.0 { xy / (xx * yy).sqrt() } else { 0.0 }
+}

@@ -1,0 +1,277 @@
+//! Is anything left? What of a residual an additive model of many signals predicts on stretches of time that it has not seen, with what that
+//! lines up with; and how much of it its own past predicts.
+
+use super::predict::{CHANNELS, FORCE, RATE, VOLTAGE};
+use super::problem::{Problem, State, Values};
+use crate::base::stats::quantile;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Levels that a signal is cut into.
+const BINS: usize = 8;
+/// Parts of the time, each predicted from the others.
+const FOLDS: u32 = 6;
+/// Stretches of time to a fold's piece, so that each fold holds early and late flight.
+const PIECE: u32 = 3;
+
+/// A signal that the simulation knows: no measurement that enters the residual is among them.
+pub struct Feature {
+    pub name: &'static str,
+    /// Level of each row, 0 to [`BINS`].
+    level: Vec<u8>,
+    /// Upper ends of the levels.
+    pub edges: Vec<f64>,
+}
+
+/// Structure in one channel.
+#[derive(Clone, Debug, Serialize)]
+pub struct Structure {
+    pub channel: &'static str,
+    pub unit: &'static str,
+    /// Root mean square of the residual, of what of it is structure in the mean, and of what its own past predicts.
+    pub rms: f64,
+    pub structure_rms: f64,
+    pub coloured_rms: f64,
+    /// The signal that explains most of it, with the share that it explains, and the curve: level of the signal, mean residual, its standard error.
+    pub along: Option<&'static str>,
+    pub along_share: f64,
+    pub curve: Vec<[f64; 3]>,
+    /// The signal that explains most of the variance, and the ratio of the standard deviations at its extremes.
+    pub variance_along: Option<&'static str>,
+    pub variance_ratio: f64,
+}
+
+/// Names and units of all channels.
+pub const NAMES: [(&str, &str); CHANNELS] = [
+    ("roll rate", "rad/s"),
+    ("pitch rate", "rad/s"),
+    ("yaw rate", "rad/s"),
+    ("specific force x", "m/s2"),
+    ("specific force y", "m/s2"),
+    ("specific force z", "m/s2"),
+    ("turn x", "rad"),
+    ("turn y", "rad"),
+    ("turn z", "rad"),
+    ("push x", "m/s"),
+    ("push y", "m/s"),
+    ("push z", "m/s"),
+    ("voltage", "V"),
+];
+
+/// The fold of a stretch of time.
+pub fn fold(block: u32) -> u32 {
+    block / PIECE % FOLDS
+}
+
+/// The residuals of channels of rates, forces and voltage, searched for structure.
+pub fn search(problem: &Problem, state: &State, residual: &Values) -> Vec<Structure> {
+    let channels: Vec<usize> = (RATE..FORCE + 3).chain([VOLTAGE]).filter(|&c| residual[c].len() > 200).collect();
+    let mut found: Vec<Structure> = channels.into_par_iter().map(|c| one(problem, state, c, &residual[c])).collect();
+    let mut belongs = |c: usize, share: f64, along: &'static str| {
+        found.iter_mut().filter(|s| s.channel == NAMES[c].0).for_each(|s| s.belongs(share, along));
+    };
+    if let Some(share) = super::place::share(problem, residual) {
+        [FORCE, FORCE + 1].into_iter().for_each(|c| belongs(c, share, PLACE));
+    }
+    for swing in super::ringing::find(problem, residual) {
+        belongs(FORCE + swing.axis, swing.share, swing.name);
+    }
+    found
+}
+
+/// Where in the world it is, as a signal that structure lines up with.
+pub const PLACE: &str = "place";
+
+impl Structure {
+    /// So much of the residual's power belongs to what no signal of the moment tells.
+    fn belongs(&mut self, share: f64, along: &'static str) {
+        self.structure_rms = self.structure_rms.max(share.sqrt() * self.rms);
+        if share > self.along_share {
+            (self.along, self.along_share, self.curve) = (Some(along), share, Vec::new());
+        }
+    }
+}
+
+fn one(problem: &Problem, state: &State, c: usize, residual: &[f64]) -> Structure {
+    let features = features(problem, state, c);
+    let fold: Vec<u32> = problem.rows[c].iter().map(|row| fold(row.block)).collect();
+    let cap = 5.0 * crate::base::stats::robust_sd(residual).max(1e-12);
+    let y: Vec<f64> = residual.iter().map(|r| r.clamp(-cap, cap)).collect();
+    let power = crate::base::stats::mean(&y.iter().map(|y| y * y).collect::<Vec<_>>());
+    let all: Vec<&Feature> = features.iter().collect();
+    // A shifted residual has the same colour and no structure: what it seems to have is chance.
+    let shifted = |by: usize| -> Vec<f64> { (0..y.len()).map(|i| y[(i + by) % y.len()]).collect() };
+    let chance: Vec<f64> = (1..=4).map(|k| explained(&all, &shifted(k * y.len() / 5), &fold)).collect();
+    let most = chance.iter().copied().fold(0.0, f64::max);
+    let share = (explained(&all, &y, &fold) - most).max(0.0);
+    let best = |y: &[f64]| {
+        let shares = features.iter().map(|f| (explained(&[f], y, &fold), f));
+        shares.max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let (along_share, along) = best(&y).map_or((0.0, None), |(s, f)| (s.max(0.0), (s > 0.0).then_some(f)));
+    let logs: Vec<f64> = y.iter().map(|y| (y * y + 1e-3 * power).ln()).collect();
+    let middle = crate::base::stats::mean(&logs);
+    let logs: Vec<f64> = logs.iter().map(|l| l - middle).collect();
+    let (variance_share, loud) = best(&logs).map_or((0.0, None), |(s, f)| (s, (s > 0.01).then_some(f)));
+    let spread = |f: &Feature| {
+        let sd: Vec<f64> = curve(f, &y).iter().map(|[_, _, error]| *error).filter(|e| *e > 0.0).collect();
+        let count = |f: &Feature, b: usize| f.level.iter().filter(|&&l| l as usize == b).count().max(1) as f64;
+        let sds: Vec<f64> = sd.iter().enumerate().map(|(b, e)| e * count(f, b).sqrt()).collect();
+        sds.iter().copied().fold(0.0, f64::max) / sds.iter().copied().fold(f64::INFINITY, f64::min)
+    };
+    let (channel, unit) = NAMES[c];
+    Structure {
+        channel,
+        unit,
+        rms: crate::base::stats::mean(&residual.iter().map(|r| r * r).collect::<Vec<_>>()).sqrt(),
+        structure_rms: (share * power).sqrt(),
+        coloured_rms: (coloured(problem, c, &y) * power).sqrt(),
+        along: along.map(|f| f.name),
+        along_share,
+        curve: along.map_or(Vec::new(), |f| curve(f, &y)),
+        variance_along: loud.filter(|_| variance_share > 0.02).map(|f| f.name),
+        variance_ratio: loud.map_or(1.0, spread),
+    }
+}
+
+/// Mean residual and its standard error by level of a signal.
+fn curve(feature: &Feature, y: &[f64]) -> Vec<[f64; 3]> {
+    let mut sums = vec![[0.0; 3]; feature.edges.len()];
+    for (level, y) in feature.level.iter().zip(y) {
+        let s = &mut sums[*level as usize];
+        (s[0], s[1], s[2]) = (s[0] + 1.0, s[1] + y, s[2] + y * y);
+    }
+    let point = |(s, edge): (&[f64; 3], &f64)| {
+        let n = s[0].max(1.0);
+        let mean = s[1] / n;
+        [*edge, mean, ((s[2] / n - mean * mean).max(0.0) / n).sqrt()]
+    };
+    sums.iter().zip(&feature.edges).map(point).collect()
+}
+
+/// Share of `y` that the levels of the features, added up, predict in folds that they were not fitted on.
+fn explained(features: &[&Feature], y: &[f64], fold: &[u32]) -> f64 {
+    let n = features.len() * BINS;
+    let mut normal = vec![DMatrix::<f64>::zeros(n, n); FOLDS as usize];
+    let mut right = vec![DVector::<f64>::zeros(n); FOLDS as usize];
+    let mut active = vec![0usize; features.len()];
+    for i in 0..y.len() {
+        for (k, f) in features.iter().enumerate() {
+            active[k] = k * BINS + f.level[i] as usize;
+        }
+        let (m, r) = (&mut normal[fold[i] as usize], &mut right[fold[i] as usize]);
+        for (k, &a) in active.iter().enumerate() {
+            r[a] += y[i];
+            for &b in &active[..=k] {
+                m[(a.max(b), a.min(b))] += 1.0;
+            }
+        }
+    }
+    let whole = normal.iter().fold(DMatrix::zeros(n, n), |s, m| s + m);
+    let whole_right = right.iter().fold(DVector::zeros(n), |s, r| s + r);
+    let ridge = 1e-3 * y.len() as f64;
+    let solution: Vec<Option<DVector<f64>>> = (0..FOLDS as usize)
+        .map(|k| {
+            let rest = &whole - &normal[k];
+            let full =
+                DMatrix::from_fn(n, n, |i, j| rest[(i.max(j), i.min(j))] + if i == j { ridge + 1e-9 } else { 0.0 });
+            full.cholesky().map(|c| c.solve(&(&whole_right - &right[k])))
+        })
+        .collect();
+    let (mut left, mut total) = (0.0, 0.0);
+    for i in 0..y.len() {
+        let Some(beta) = &solution[fold[i] as usize] else { return 0.0 };
+        let predicted: f64 = features.iter().enumerate().map(|(k, f)| beta[k * BINS + f.level[i] as usize]).sum();
+        left += (y[i] - predicted).powi(2);
+        total += y[i] * y[i];
+    }
+    1.0 - left / total.max(1e-300)
+}
+
+/// Share of a channel's power that its own past predicts.
+fn coloured(problem: &Problem, c: usize, y: &[f64]) -> f64 {
+    let rows = &problem.rows[c];
+    let order = 6;
+    let (mut m, mut r) = (DMatrix::<f64>::zeros(order, order), DVector::<f64>::zeros(order));
+    let (mut run, mut total) = (0, 0.0);
+    for i in 0..y.len() {
+        run = if rows[i].follows { run + 1 } else { 0 };
+        if run >= order {
+            total += y[i] * y[i];
+            for a in 0..order {
+                r[a] += y[i] * y[i - 1 - a];
+                (0..order).for_each(|b| m[(a, b)] += y[i - 1 - a] * y[i - 1 - b]);
+            }
+        }
+    }
+    (0..order).for_each(|a| m[(a, a)] += 1e-6 * total + 1e-300);
+    m.cholesky().map_or(0.0, |cholesky| (cholesky.solve(&r).dot(&r) / total.max(1e-300)).clamp(0.0, 1.0))
+}
+
+/// Signals at the rows of channel `c`, cut into levels.
+fn features(problem: &Problem, state: &State, c: usize) -> Vec<Feature> {
+    let all = signals(problem, state, c);
+    all.into_iter().filter_map(|(name, _, values)| Feature::new(name, &values)).collect()
+}
+
+/// Signals at the rows of channel `c`, with their names and units.
+pub fn signals(problem: &Problem, state: &State, c: usize) -> Vec<(&'static str, &'static str, Vec<f64>)> {
+    let rows = &problem.rows[c];
+    let at = |f: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+        rows.iter().map(|row| f(row.flight as usize, row.sample as usize)).collect()
+    };
+    let records = &problem.records;
+    let u = |f: usize, i: usize| state[f].thrust(i);
+    let s = move |f: usize, i: usize| 0.5 + 0.5 * u(f, i);
+    let before = |f: usize, i: usize| u(f, i) - u(f, i.saturating_sub(8));
+    let v = |k: usize| move |f: usize, i: usize| records[f].velocity[k][i];
+    let over_ground = |f: usize, i: usize| v(0)(f, i).hypot(v(1)(f, i));
+    let w = |k: usize| move |f: usize, i: usize| state[f].rates[i][k];
+    let heading = |f: usize, i: usize| records[f].axes[i][0][1].atan2(records[f].axes[i][0][0]);
+    let begins = problem.clocks();
+    let clock = |f: usize, i: usize| begins[f] + records[f].time[i] - records[f].time[0];
+    let middle = 0.5 * rows.last().map_or(0.0, |row| clock(row.flight as usize, row.sample as usize));
+    // What a number that changed in flight leaves.
+    let moved = |k: usize| move |f: usize, i: usize| v(k)(f, i) * (clock(f, i) / middle.max(1.0) - 1.0);
+    vec![
+        ("throttle", "share", at(&s)),
+        ("change of throttle", "share", at(&before)),
+        ("voltage", "V", at(&|f, i| state[f].modelled_v[i])),
+        ("forward speed", "m/s", at(&v(0))),
+        ("sideways speed", "m/s", at(&v(1))),
+        ("vertical speed", "m/s", at(&v(2))),
+        ("speed across the rotors", "m/s", at(&over_ground)),
+        ("throttle times vertical speed", "m/s", at(&|f, i| s(f, i) * v(2)(f, i))),
+        ("speed across times vertical speed", "m2/s2", at(&|f, i| over_ground(f, i) * v(2)(f, i))),
+        ("height", "m", at(&|f, i| records[f].height[i].min(50.0))),
+        ("time", "s", at(&clock)),
+        ("forward speed times time", "m/s", at(&moved(0))),
+        ("sideways speed times time", "m/s", at(&moved(1))),
+        ("heading", "rad", at(&heading)),
+        ("roll rate", "rad/s", at(&w(0))),
+        ("pitch rate", "rad/s", at(&w(1))),
+        ("yaw rate", "rad/s", at(&w(2))),
+        ("yaw rate times forward speed", "m/s2", at(&|f, i| w(2)(f, i) * v(0)(f, i))),
+        ("yaw rate times sideways speed", "m/s2", at(&|f, i| w(2)(f, i) * v(1)(f, i))),
+        ("lag of the rates", "full sticks", at(&|f, i| state[f].lag(i))),
+        ("position east", "m", at(&|f, i| records[f].position[0][i])),
+        ("position north", "m", at(&|f, i| records[f].position[1][i])),
+    ]
+}
+
+impl Feature {
+    /// Cuts a signal into levels that are equally often met; none where it hardly varies or is not known.
+    fn new(name: &'static str, values: &[f64]) -> Option<Self> {
+        let known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        if known.len() < values.len() / 2 {
+            return None;
+        }
+        let edges: Vec<f64> = (1..=BINS).map(|b| quantile(&known, b as f64 / BINS as f64)).collect();
+        if edges[BINS - 1] - edges[0] < 1e-9 {
+            return None;
+        }
+        let level = |v: &f64| edges.partition_point(|edge| edge < v).min(BINS - 1) as u8;
+        Some(Feature { name, level: values.iter().map(level).collect(), edges })
+    }
+}

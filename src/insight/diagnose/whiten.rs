@@ -1,0 +1,127 @@
+//! Noise of each channel: an autoregressive model of what is left when everything that could explain it is taken off, and weights that outliers
+//! do not rule.
+
+use super::predict::CHANNELS;
+use super::problem::{Row, Values};
+use crate::base::stats::robust_sd;
+use nalgebra::{DMatrix, DVector};
+
+/// Order of the autoregressive model: rates and forces, turns and pushes, voltage.
+const ORDER: [usize; 3] = [8, 3, 4];
+/// Whitened residuals beyond so many standard deviations weigh less (Huber).
+const HUBER: f64 = 3.5;
+/// Largest sum of the coefficients: a constant residual keeps at least what is left to 1 of its size.
+const MOST_MEMORY: f64 = 0.6;
+/// Rows below which a channel is left out.
+const LEAST_ROWS: usize = 40;
+
+/// Turns rows of residuals into independent ones of variance 1.
+#[derive(Clone, Debug)]
+pub struct Whitener {
+    /// Coefficients of the past, newest first, and one over the standard deviation.
+    filter: [(Vec<f64>, f64); CHANNELS],
+    /// Square root of each row's weight; 0 leaves a row out.
+    weight: Values,
+}
+
+fn order(c: usize) -> usize {
+    match c {
+        0..6 => ORDER[0],
+        6..12 => ORDER[1],
+        _ => ORDER[2],
+    }
+}
+
+impl Whitener {
+    /// Scales channels only: before anything is known of their noise. An autoregression of residuals that still hold a slow effect would
+    /// take the effect for noise.
+    pub fn plain(residual: &Values, rows: &[Vec<Row>; CHANNELS]) -> Self {
+        let filter = std::array::from_fn(|c| (Vec::new(), 1.0 / robust_sd(&residual[c]).max(1e-12)));
+        let weigh = |c: usize| if rows[c].len() < LEAST_ROWS { 0.0 } else { 1.0 };
+        Whitener { filter, weight: std::array::from_fn(|c| vec![weigh(c); rows[c].len()]) }
+    }
+
+    /// From residuals in which no structure is left. `other` is a unit for channels without any.
+    pub fn of(noise: &Values, rows: &[Vec<Row>; CHANNELS]) -> Self {
+        let filter = std::array::from_fn(|c| autoregression(&noise[c], &rows[c], order(c)));
+        let mut out = Whitener { filter, weight: std::array::from_fn(|c| vec![1.0; rows[c].len()]) };
+        let white = out.apply(noise, rows);
+        for c in 0..CHANNELS {
+            let sd = robust_sd(&white[c]).max(1e-12);
+            out.filter[c].1 /= sd;
+            let weigh = |w: &f64| (HUBER * sd / w.abs().max(1e-12)).min(1.0).sqrt();
+            out.weight[c] = if rows[c].len() < LEAST_ROWS {
+                vec![0.0; rows[c].len()]
+            } else {
+                white[c].iter().map(weigh).collect()
+            };
+            // Where the filter has no past, a row is not white.
+            let mut run = 0;
+            for (i, row) in rows[c].iter().enumerate() {
+                run = if row.follows { run + 1 } else { 0 };
+                if run < order(c) {
+                    out.weight[c][i] = 0.0;
+                }
+            }
+        }
+        out
+    }
+
+    /// Whitens values in the layout of the rows; a channel without values stays empty.
+    pub fn apply(&self, x: &Values, rows: &[Vec<Row>; CHANNELS]) -> Values {
+        std::array::from_fn(|c| {
+            let (past, scale) = &self.filter[c];
+            let mut run = 0;
+            let one = |i: usize| {
+                run = if rows[c][i].follows { run + 1 } else { 0 };
+                let known = past.iter().take(run).enumerate();
+                let expected: f64 = known.map(|(j, a)| a * x[c][i - 1 - j]).sum();
+                (x[c][i] - expected) * scale * self.weight[c][i]
+            };
+            (0..x[c].len()).map(one).collect()
+        })
+    }
+
+    /// Square roots of the rows' weights.
+    pub fn weights_mut(&mut self) -> &mut Values {
+        &mut self.weight
+    }
+
+    /// Standard deviation of a channel's noise from sample to sample, in its unit.
+    pub fn sd(&self, c: usize) -> f64 {
+        1.0 / self.filter[c].1
+    }
+}
+
+/// Least squares of each row on those before it; one over the standard deviation of what is left.
+fn autoregression(x: &[f64], rows: &[Row], order: usize) -> (Vec<f64>, f64) {
+    let mut normal = DMatrix::<f64>::zeros(order, order);
+    let mut right = DVector::<f64>::zeros(order);
+    // Outliers would make any noise look like a random walk.
+    let cap = 6.0 * robust_sd(x);
+    let at = |i: usize| x[i].clamp(-cap, cap);
+    let mut run = 0;
+    let mut power = 0.0;
+    for i in 0..x.len() {
+        run = if rows[i].follows { run + 1 } else { 0 };
+        power += at(i) * at(i);
+        if run >= order {
+            for a in 0..order {
+                right[a] += at(i) * at(i - 1 - a);
+                for b in 0..=a {
+                    normal[(a, b)] += at(i - 1 - a) * at(i - 1 - b);
+                }
+            }
+        }
+    }
+    let ridge = 1e-6 * power + 1e-300;
+    let full = DMatrix::from_fn(order, order, |a, b| normal[(a.max(b), a.min(b))] + if a == b { ridge } else { 0.0 });
+    let mut past: Vec<f64> = full.cholesky().map_or(vec![0.0; order], |c| c.solve(&right).iter().copied().collect());
+    // What measured flights leave is so slow that its whitening would discard everything slow, the causes with it.
+    let memory: f64 = past.iter().sum();
+    if memory > MOST_MEMORY {
+        past.iter_mut().for_each(|a| *a *= MOST_MEMORY / memory);
+    }
+    let sd = (power / x.len().max(1) as f64).sqrt();
+    (past, 1.0 / sd.max(1e-12))
+}

@@ -1,0 +1,81 @@
+//! From flight logs to a vehicle (paper section 4.1 and Table 1).
+//!
+//! Each part of the model is fitted on the first 70 % of the flight and validated on the rest; the values are then fitted
+//! once more on all of it. What the logs cannot tell is taken from a base vehicle, and marked.
+
+pub mod battery;
+pub mod bias;
+pub mod data;
+pub mod document;
+pub mod estimate;
+mod fill;
+pub mod flight;
+pub mod force;
+pub mod rates;
+pub mod result;
+pub mod solve;
+
+use crate::base::check::{Check, Invalid};
+use crate::base::stats::quantile;
+use crate::insight::quality::Quality;
+use crate::model::vehicle::Vehicle;
+use data::Data;
+use rayon::prelude::*;
+use result::Identification;
+
+/// How to identify.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Where values come from that the logs cannot tell.
+    pub base: Vehicle,
+    /// Mass, kg; none: what the logs say, else the base vehicle's.
+    pub mass_kg: Option<f64>,
+    /// Body rates that a full stick asks for, rad/s; none: what the logs say, else the base vehicle's.
+    pub max_rate_rad_s: Option<[f64; 3]>,
+    /// Cut-off of the zero-phase filter on rates, measured and predicted, Hz.
+    pub rate_cutoff_hz: f64,
+    /// The same for specific force.
+    pub force_cutoff_hz: f64,
+}
+
+impl Check for Options {
+    fn check(&self) -> Result<(), Invalid> {
+        Invalid::unless_positive("--mass", self.mass_kg.unwrap_or(1.0), "")?;
+        Invalid::unless_positive("--rate-cutoff", self.rate_cutoff_hz, "")?;
+        Invalid::unless_positive("--force-cutoff", self.force_cutoff_hz, "")
+    }
+}
+
+/// What identification is busy with: called before each step with its name and the share done so far.
+pub type Watch<'a> = &'a mut dyn FnMut(&str, f64);
+
+pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
+
+/// Identifies one vehicle from its flights.
+pub fn identify(logs: Vec<Quality>, options: &Options, watch: Watch) -> Identification {
+    let data = Data::new(logs);
+    let mut out = Identification::new(&data, options);
+    watch("roll, pitch and yaw response", 0.0);
+    let fitted: Vec<_> = (0..3).into_par_iter().map(|axis| fill::rates::fit(&data, axis, options)).collect();
+    for (axis, fitted) in fitted.into_iter().enumerate() {
+        fill::rates::keep(fitted, axis, &mut out);
+    }
+    watch("battery", 0.45);
+    fill::battery::fill(&data, &mut out);
+    watch("thrust and drag", 0.5);
+    fill::force::fill(&data, options, &mut out);
+    watch("done", 1.0);
+    out
+}
+
+/// 99 % of the speed in flight, m/s; none without velocity.
+fn fastest(data: &Data) -> Option<f64> {
+    let mut speeds = Vec::new();
+    for flight in &data.flights {
+        for i in (0..flight.time.len()).filter(|&i| flight.usable[i]) {
+            speeds.push((0..3).map(|k| flight.velocity[k][i].powi(2)).sum::<f64>().sqrt());
+        }
+    }
+    speeds.retain(|v| v.is_finite());
+    (!speeds.is_empty()).then(|| quantile(&speeds, 0.99))
+}

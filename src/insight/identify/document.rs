@@ -1,0 +1,57 @@
+//! An identification as JSON.
+
+use super::AXES;
+use super::estimate::Estimate;
+use super::result::{Battery, Drag, Identification, Response};
+use crate::insight::quality::{Finding, Summary};
+use crate::model::vehicle::Vehicle;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What `racer identify --json` writes. A value that the logs cannot tell is null, with a `why`.
+#[derive(Serialize)]
+pub struct Document<'a> {
+    racer: &'a str,
+    logs: Vec<CheckedLog<'a>>,
+    /// Usable flight of all logs, s.
+    usable_s: f64,
+    /// By axis and for the thrust; `rmse` and `mae` in `unit`, on the validation part.
+    response: BTreeMap<&'a str, &'a Response>,
+    max_rate_rad_s: BTreeMap<&'a str, &'a Estimate>,
+    /// c0..c5 of the paper's Eq. 7, N.
+    thrust_coefficients: &'a [Estimate; 6],
+    /// 1 and 99 % of the thrust command in flight, -1..1.
+    thrust_flown: Option<[f64; 2]>,
+    drag: &'a Drag,
+    battery: &'a Battery,
+    accelerometer_bias_m_s2: &'a [Estimate; 3],
+    remarks: &'a [String],
+    vehicle: &'a Vehicle,
+}
+
+/// A log and what its check found.
+#[derive(Serialize)]
+pub struct CheckedLog<'a> {
+    pub name: &'a str,
+    pub streams: &'a [Summary],
+    pub findings: &'a [Finding],
+}
+
+impl<'a> Document<'a> {
+    pub fn new(found: &'a Identification, logs: Vec<CheckedLog<'a>>) -> Self {
+        Document {
+            racer: env!("CARGO_PKG_VERSION"),
+            logs,
+            usable_s: found.usable_s,
+            response: AXES.into_iter().chain(["thrust"]).zip(&found.response).collect(),
+            max_rate_rad_s: AXES.into_iter().zip(&found.max_rate_rad_s).collect(),
+            thrust_coefficients: &found.thrust_n,
+            thrust_flown: found.flown,
+            drag: &found.drag,
+            battery: &found.battery,
+            accelerometer_bias_m_s2: &found.accelerometer_bias_m_s2,
+            remarks: &found.remarks,
+            vehicle: &found.vehicle,
+        }
+    }
+}

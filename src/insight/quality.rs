@@ -1,0 +1,120 @@
+//! What is wrong with a log, what that prevents, and what is left to work with.
+
+mod clipping;
+mod coverage;
+mod offset;
+mod outliers;
+mod phases;
+mod signs;
+mod timing;
+mod tumbling;
+
+pub use coverage::Parameter;
+
+use crate::flight::spans::{self, Span};
+use crate::flight::{Log, Readable};
+use serde::Serialize;
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Severity {
+    /// Handled without loss.
+    Note,
+    /// Part of the log is not used.
+    Warning,
+    /// Results would be wrong or are impossible.
+    Problem,
+}
+
+/// Something about a log that a user should know.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    pub severity: Severity,
+    /// What kind of finding, such as `gap`.
+    pub kind: &'static str,
+    /// Which stream, such as `imu`.
+    pub stream: &'static str,
+    /// When, s since the start of the log; none where it holds throughout.
+    pub span_s: Option<Span>,
+    /// What was found.
+    pub what: String,
+    /// What it prevents, and what is done about it.
+    pub so: String,
+}
+
+/// One stream in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    pub stream: &'static str,
+    pub samples: usize,
+    /// Mean rate, 1/s.
+    pub rate_hz: Option<f64>,
+    /// Share of the samples that differ from the one before.
+    pub fresh: f64,
+    /// First and last, s since the start of the log.
+    pub span_s: Option<Span>,
+}
+
+/// A checked log.
+#[derive(Clone, Debug)]
+pub struct Quality {
+    /// The log with time ascending in every stream, repeated rows gone and clocks aligned.
+    pub log: Log,
+    pub streams: Vec<Summary>,
+    /// By how much the odometry's clock was moved to the IMU's, s.
+    pub moved_s: f64,
+    /// The worst first.
+    pub findings: Vec<Finding>,
+    /// When the vehicle flies, undamaged and within its sensors' ranges.
+    pub usable: Vec<Span>,
+    /// What the log can tell, in the order of the model's equations.
+    pub parameters: Vec<Parameter>,
+}
+
+impl Finding {
+    pub fn new(severity: Severity, kind: &'static str, stream: &'static str, what: String, so: &str) -> Self {
+        Self { severity, kind, stream, span_s: None, what, so: so.into() }
+    }
+
+    pub fn during(mut self, span: Span) -> Self {
+        self.span_s = Some(span);
+        self
+    }
+}
+
+/// Checks, and repairs what can be repaired. Never fails: a log with nothing usable says so.
+pub fn check(log: &Log) -> Quality {
+    let mut findings = Vec::new();
+    if let Readable::Prefix { bytes, of, why } = &log.readable {
+        let share = 100.0 * *bytes as f64 / (*of).max(1) as f64;
+        let what = format!("readable up to byte {bytes} of {of} ({share:.0} %): {why}");
+        findings.push(Finding::new(Severity::Problem, "damaged_file", "file", what, "what comes after is lost"));
+    }
+    let (mut log, streams) = timing::repair(log, &mut findings);
+    if log.imu.is_empty() {
+        findings.push(Finding::new(
+            Severity::Problem,
+            "no_imu",
+            "imu",
+            "no angular velocity and no specific force".into(),
+            "nothing can be identified",
+        ));
+        let parameters = coverage::told(&log, &[]);
+        return Quality { log, streams, moved_s: 0.0, findings, usable: Vec::new(), parameters };
+    }
+    let moved_s = offset::align(&mut log, &mut findings);
+    let mut holes = timing::gaps(&log, &mut findings);
+    holes.extend(phases::impacts(&log, &mut findings));
+    holes.extend(phases::ground(&log, &mut findings));
+    holes.extend(clipping::find(&log, &mut findings));
+    holes.extend(tumbling::find(&log, &mut findings));
+    let times = &log.imu.time_s;
+    let mut usable = spans::without([times[0], times[times.len() - 1]], &holes);
+    usable.retain(|span| span[1] - span[0] >= phases::SHORTEST_S);
+    signs::judge(&log, &usable, &mut findings);
+    outliers::count(&log, &mut findings);
+    findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+    let parameters = coverage::told(&log, &usable);
+    Quality { log, streams, moved_s, findings, usable, parameters }
+}

@@ -1,0 +1,149 @@
+//! Whether axes, signs and frames make sense together.
+
+use super::offset::{integrals, integrated, turns};
+use super::{Finding, Severity};
+use crate::base::stats::{correlation, mean, median};
+use crate::flight::Log;
+use crate::flight::series::{held, period};
+use crate::flight::spans::{Span, contain};
+use crate::model::attitude::body_axes;
+
+const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
+/// Delays at which rates are compared with their setpoints, s.
+const DELAYS_S: [f64; 4] = [0.0, 0.02, 0.05, 0.1];
+/// A correlation of this size decides about a sign.
+const CLEAR: f64 = 0.5;
+const GRAVITY: f64 = 9.81;
+
+/// Adds what contradicts itself within the `usable` spans.
+pub fn judge(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
+    let chosen: Vec<usize> = (0..log.imu.len()).filter(|&i| contain(usable, log.imu.time_s[i])).collect();
+    if chosen.len() < 100 {
+        return;
+    }
+    setpoints(log, &chosen, findings);
+    upright(log, &chosen, findings);
+    attitude(log, usable, findings);
+    gravity(log, &chosen, findings);
+    velocity(log, usable, findings);
+}
+
+fn problem(kind: &'static str, stream: &'static str, what: String, so: &str, findings: &mut Vec<Finding>) {
+    findings.push(Finding::new(Severity::Problem, kind, stream, what, so));
+}
+
+/// Rates follow the setpoints of their own axis, in the same direction.
+fn setpoints(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
+    let gyro: [Vec<f64>; 3] = std::array::from_fn(|k| chosen.iter().map(|&i| log.imu.rows[i][k]).collect());
+    for axis in 0..3 {
+        let setpoint = log.setpoint.column(axis);
+        let agreement = |response: &[f64]| {
+            let at = |delay: f64| {
+                let times: Vec<f64> = chosen.iter().map(|&i| log.imu.time_s[i] - delay).collect();
+                let asked = held(&log.setpoint.time_s, &setpoint, &times);
+                let (x, y): (Vec<f64>, Vec<f64>) =
+                    asked.iter().zip(response).filter(|(x, y)| x.is_finite() && y.is_finite()).unzip();
+                correlation(&x, &y)
+            };
+            DELAYS_S.map(at).into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
+        };
+        let own = agreement(&gyro[axis]);
+        let other = (0..3).filter(|&k| k != axis).map(|k| (k, agreement(&gyro[k])));
+        let (rival, most) = other.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).unwrap_or((axis, 0.0));
+        let so = "give the sign or the axis in a mapping";
+        if own < -CLEAR {
+            let what = format!("the {} rate goes against its setpoint (correlation {own:.2})", AXES[axis]);
+            problem("sign", "setpoint", what, so, findings);
+        } else if most.abs() > 0.8 && own.abs() < 0.5 * most.abs() {
+            let what = format!("the {} setpoint moves the {} rate (correlation {most:.2})", AXES[axis], AXES[rival]);
+            problem("swapped_axes", "setpoint", what, so, findings);
+        }
+    }
+}
+
+/// In flight the thrust points along +z.
+fn upright(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
+    let middle: [f64; 3] =
+        std::array::from_fn(|k| median(&chosen.iter().map(|&i| log.imu.rows[i][3 + k]).collect::<Vec<_>>()));
+    let so = "turn the IMU in a mapping (`rotation_deg`, or body = \"FRD\")";
+    if middle[2] < 0.0 && middle[2].abs() > middle[0].abs().max(middle[1].abs()) {
+        let what = format!("the specific force along z is {:.1} m/s2 at the median: z points down", middle[2]);
+        problem("frame", "imu", what, so, findings);
+    } else if middle[0].abs().max(middle[1].abs()) > 0.5 * middle[2].abs() {
+        let [x, y, z] = middle;
+        let what = format!("specific force at the median is ({x:.1}, {y:.1}, {z:.1}) m/s2, not along z");
+        problem("frame", "imu", what, so, findings);
+    }
+}
+
+/// The attitude turns as the gyro says.
+fn attitude(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
+    let turns = turns(&log.odometry);
+    let integrals = integrals(&log.imu);
+    for (k, axis) in AXES.into_iter().enumerate() {
+        let gyro = integrated(&log.imu, &integrals[k], &turns.spans, 0.0);
+        let (x, y): (Vec<f64>, Vec<f64>) = (0..turns.spans.len())
+            .filter(|&i| gyro[i].is_finite() && contain(usable, turns.spans[i][0]))
+            .map(|i| (turns.measured[i][k], gyro[i]))
+            .unzip();
+        let agreement = correlation(&x, &y);
+        // Little turning tells nothing; a held, smoothed or noisy attitude still agrees in sign.
+        let turning = y.iter().map(|y| y.abs()).fold(0.0, f64::max) > 0.05;
+        if x.len() > 100 && turning && agreement < 0.3 {
+            let what = format!("the attitude does not turn in {axis} as the gyro does (correlation {agreement:.2})");
+            let so = "check the frames (FLU or FRD, ENU or NED) and the order of the quaternion in a mapping";
+            problem("frame", "odometry", what, so, findings);
+        }
+    }
+}
+
+/// Specific force turned into the world carries the vehicle against gravity.
+fn gravity(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
+    let times: Vec<f64> = chosen.iter().map(|&i| log.imu.time_s[i]).collect();
+    let q: [Vec<f64>; 4] = std::array::from_fn(|k| held(&log.odometry.time_s, &log.odometry.column(3 + k), &times));
+    let lift: Vec<f64> = (0..chosen.len())
+        .map(|j| {
+            let axes = body_axes([q[0][j], q[1][j], q[2][j], q[3][j]]);
+            (0..3).map(|k| axes[k][2] * log.imu.rows[chosen[j]][3 + k]).sum()
+        })
+        .filter(|x: &f64| x.is_finite())
+        .collect();
+    let carried = mean(&lift);
+    if lift.len() > 100 && (carried - GRAVITY).abs() > 0.25 * GRAVITY {
+        let what =
+            format!("specific force turned upright by the attitude is {carried:.1} m/s2 on average, not {GRAVITY}");
+        problem("frame", "odometry", what, "check the attitude's frames, or the accelerometer's scale", findings);
+    }
+}
+
+/// Velocity is the change of position.
+fn velocity(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
+    let odometry = &log.odometry;
+    let times = &odometry.time_s;
+    // Over a tenth of a second, noise of the position matters little.
+    if times.len() < 2 {
+        return;
+    }
+    let stride = (0.1 / period(times)).ceil().max(1.0) as usize;
+    for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
+        let (mut from_position, mut measured) = (Vec::new(), Vec::new());
+        for i in (stride..odometry.len()).step_by(stride) {
+            let (a, b, middle) = (&odometry.rows[i - stride], &odometry.rows[i], &odometry.rows[i - stride / 2]);
+            let axes = body_axes([middle[3], middle[4], middle[5], middle[6]]);
+            let v: f64 = (0..3).map(|j| axes[j][k] * middle[7 + j]).sum();
+            let d = (b[k] - a[k]) / (times[i] - times[i - stride]);
+            if v.is_finite() && d.is_finite() && contain(usable, times[i]) {
+                from_position.push(d);
+                measured.push(v);
+            }
+        }
+        let agreement = correlation(&from_position, &measured);
+        let moving = measured.iter().map(|v| v.abs()).fold(0.0, f64::max) > 0.5;
+        if measured.len() > 50 && moving && agreement < 0.5 {
+            let what =
+                format!("the velocity along {axis} is not the change of the position (correlation {agreement:.2})");
+            let so = "check the velocity's frame (body or world) and its signs in a mapping";
+            problem("frame", "odometry", what, so, findings);
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Settings of the optimiser and of the training budget.
+
+use crate::base::check::{Check, Invalid};
+use crate::learn::nn::TILE_SAMPLES as TILE;
+use serde::{Deserialize, Serialize};
+
+/// How long to train. Exactly one of `minutes` and `steps` is set.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BudgetConfig {
+    /// Wall-clock time of rollouts, updates and snapshots, minutes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub minutes: Option<f64>,
+    /// Environment steps, rounded up to whole rollouts. Repeats bit for bit, which a time cannot promise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steps: Option<u64>,
+    /// Policies kept, evenly over the budget; the last is the final one. All are evaluated afterwards and the best is chosen.
+    pub snapshots: usize,
+}
+
+impl BudgetConfig {
+    /// Share of the budget that `steps` environment steps in `seconds` have used, 0 to 1 and beyond. A budget of neither
+    /// minutes nor steps, which `check` refuses, is used up from the start.
+    pub fn share(&self, steps: u64, seconds: f64) -> f64 {
+        match (self.steps, self.minutes) {
+            (Some(total), _) => steps as f64 / total as f64,
+            (None, Some(minutes)) => seconds / (60.0 * minutes),
+            (None, None) => 1.0,
+        }
+    }
+}
+
+impl Check for BudgetConfig {
+    fn check(&self) -> Result<(), Invalid> {
+        match (self.minutes, self.steps) {
+            (Some(minutes), None) => Invalid::unless_positive("minutes", minutes, "")?,
+            (None, Some(steps)) => Invalid::unless(steps > 0, "steps", steps, "at least 1", "")?,
+            (Some(_), Some(_)) => return Err(Invalid::new("steps", "both", "either minutes or steps", "remove one")),
+            (None, None) => return Err(Invalid::new("", "neither", "minutes or steps", "set one of them")),
+        }
+        Invalid::unless((1..=1000).contains(&self.snapshots), "snapshots", self.snapshots, "1 to 1000", "")
+    }
+}
+
+/// Proximal policy optimisation (paper sections 4.4 and 4.5).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PpoConfig {
+    /// Vehicles that fly side by side; a multiple of 64. More make the gradient steadier and the updates rarer.
+    pub environments: usize,
+    /// Steps each flies between two updates. Longer sees further before bootstrapping.
+    pub rollout: usize,
+    /// Parts that a rollout is split into; each is one step of Adam.
+    pub minibatches: usize,
+    /// Times that each rollout is learnt from.
+    pub epochs: usize,
+    /// Step size of Adam at the start.
+    pub learning_rate: f64,
+    /// Step size at the end of the budget; falls linearly. Not zero, or the last part of the budget teaches nothing.
+    pub learning_rate_final: f64,
+    /// Discount of a step. 0.995 looks two seconds ahead, enough to slow down for the split-S.
+    pub gamma: f64,
+    /// Weight of longer looks in the advantage (GAE).
+    pub lambda: f64,
+    /// How far the probability ratio may leave 1 before its gradient stops.
+    pub clip: f64,
+    /// Reward for a wide action distribution. Higher explores longer.
+    pub entropy: f64,
+    /// Weight of the critic's squared error.
+    pub value_coefficient: f64,
+    /// Gradients of a minibatch with a larger norm are scaled down to it.
+    pub max_gradient_norm: f64,
+    /// Adam's denominator offset.
+    pub adam_epsilon: f64,
+    /// lambda_a of Eq. 12: cost of the squared mean action, in the actor's loss. Higher flies with smaller commands.
+    pub action_magnitude: f64,
+    /// Share of `action_magnitude` and of the reward's `action_change` to begin with; below 1 the policy learns to fly before it learns to
+    /// fly smoothly. They grow by the same factor from step to step.
+    pub penalty_begin: f64,
+    /// Share of the budget after which they are whole.
+    pub penalty_full: f64,
+    /// Logarithm of the action noise at the start, before the tanh.
+    pub log_std_initial: f64,
+}
+
+impl PpoConfig {
+    /// Share of the penalties at `share` of the budget.
+    pub fn penalty(&self, share: f64) -> f64 {
+        let done = if self.penalty_full > 0.0 { (share / self.penalty_full).clamp(0.0, 1.0) } else { 1.0 };
+        self.penalty_begin.powf(1.0 - done)
+    }
+
+    /// Environment steps of one rollout.
+    pub fn samples(&self) -> usize {
+        self.environments * self.rollout
+    }
+
+    fn check_batch(&self) -> Result<(), Invalid> {
+        let &Self { environments, rollout, minibatches, .. } = self;
+        if environments == 0 || environments % TILE != 0 {
+            let low = (environments / TILE * TILE).max(TILE);
+            let advice = match environments {
+                0..TILE => format!("use {TILE}"),
+                _ => format!("the nearest are {low} and {}", low + TILE),
+            };
+            return Err(Invalid::new("environments", environments, &format!("a multiple of {TILE}"), &advice));
+        }
+        let Some(samples) = environments.checked_mul(rollout).filter(|&samples| samples <= 1 << 28) else {
+            let found = format!("{environments} environments x {rollout} steps");
+            return Err(Invalid::new("rollout", found, "at most 2^28 samples a rollout", "lower one of them"));
+        };
+        // Whole tiles are dealt out to the minibatches.
+        let tiles = samples / TILE;
+        let works = |minibatches: &usize| tiles.is_multiple_of(*minibatches) && *minibatches > 0;
+        if !works(&minibatches) {
+            let below = (1..minibatches.min(tiles + 1)).rev().find(works);
+            let above = (minibatches.saturating_add(1)..=tiles).find(works);
+            let nearest: Vec<_> = [below, above].into_iter().flatten().map(|n| n.to_string()).collect();
+            let expected = format!("a divisor of {samples} samples that leaves minibatches of a multiple of {TILE}");
+            let advice = format!("the nearest are {}", nearest.join(" and "));
+            return Err(Invalid::new("minibatches", minibatches, &expected, &advice));
+        }
+        Ok(())
+    }
+}
+
+impl Check for PpoConfig {
+    fn check(&self) -> Result<(), Invalid> {
+        for (key, value) in [("rollout", self.rollout), ("epochs", self.epochs)] {
+            Invalid::unless((1..=10_000).contains(&value), key, value, "1 to 10000", "")?;
+        }
+        self.check_batch()?;
+        for (key, value) in [
+            ("learning_rate", self.learning_rate),
+            ("learning_rate_final", self.learning_rate_final),
+            ("clip", self.clip),
+            ("max_gradient_norm", self.max_gradient_norm),
+            ("adam_epsilon", self.adam_epsilon),
+        ] {
+            Invalid::unless_positive(key, value, "")?;
+        }
+        for (key, value) in [
+            ("entropy", self.entropy),
+            ("value_coefficient", self.value_coefficient),
+            ("action_magnitude", self.action_magnitude),
+        ] {
+            Invalid::unless_not_negative(key, value, "")?;
+        }
+        let begins = self.penalty_begin > 0.0 && self.penalty_begin <= 1.0;
+        Invalid::unless(begins, "penalty_begin", self.penalty_begin, "above 0, at most 1", "1 is no growth")?;
+        for (key, value) in [("gamma", self.gamma), ("lambda", self.lambda), ("penalty_full", self.penalty_full)] {
+            Invalid::unless((0.0..=1.0).contains(&value), key, value, "0 to 1", "")?;
+        }
+        let wide = (-5.0..=2.0).contains(&self.log_std_initial);
+        Invalid::unless(wide, "log_std_initial", self.log_std_initial, "-5 to 2", "-0.5 is a good start")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::race::config::Config;
+
+    #[test]
+    fn penalties_grow_by_the_same_factor_and_are_then_whole() {
+        let mut ppo = Config::load("a2rl", &[]).unwrap().ppo;
+        assert_eq!([0.0, 0.3, 1.0].map(|share| ppo.penalty(share)), [1.0; 3]);
+        (ppo.penalty_begin, ppo.penalty_full) = (0.01, 0.5);
+        let [begin, quarter, half, late] = [0.0, 0.25, 0.5, 0.9].map(|share| ppo.penalty(share));
+        assert!((begin - 0.01).abs() < 1e-12 && (quarter - 0.1).abs() < 1e-12 && half == 1.0 && late == 1.0);
+        ppo.penalty_full = 0.0;
+        assert_eq!(ppo.penalty(0.0), 1.0);
+    }
+}

@@ -1,0 +1,76 @@
+//! The PPO loss of a block of 16 samples and its derivatives by the networks' outputs (paper Eq. 12).
+//!
+//! total = surrogate - entropy_coefficient entropy + magnitude_coefficient E|tanh(mean)|^2 + value_coefficient value
+
+use crate::base::lane::{Lane, build, each, sum_of_squares};
+use crate::learn::policy::{ACTIONS, log_prob_of};
+
+/// Weights of the loss's terms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights {
+    /// Ratios leave no gradient beyond 1 +- clip.
+    pub clip: f64,
+    pub entropy: f64,
+    /// lambda_a of Eq. 12.
+    pub magnitude: f64,
+    pub value: f64,
+}
+
+/// One block of samples.
+pub struct Samples<L> {
+    pub mean: [L; ACTIONS],
+    pub log_std: [L; ACTIONS],
+    pub value: L,
+    /// Unsquashed action that was taken, and its log-probability then.
+    pub z: [L; ACTIONS],
+    pub old_log_prob: L,
+    pub advantage: L,
+    pub ret: L,
+}
+
+/// Sums over lanes are left to the caller: everything here is per lane.
+pub struct Answer<L> {
+    /// Derivatives of the total by mean, log_std (without the entropy's, which is constant) and value.
+    pub d_mean: [L; ACTIONS],
+    pub d_log_std: [L; ACTIONS],
+    pub d_value: L,
+    /// The terms of [`TERMS`].
+    pub terms: [L; 5],
+}
+
+/// Per-sample terms, in the order of [`Answer::terms`]; half squared errors for `value`.
+pub const TERMS: [&str; 5] = ["surrogate", "value", "magnitude", "approx_kl", "clip_fraction"];
+
+/// Loss and derivatives; `share` is 1 over the minibatch's samples and scales the derivatives.
+#[inline(always)]
+pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
+    let one = L::one();
+    let inverse = each!(s.log_std, |x| (-x).exp());
+    let noise: [L; ACTIONS] = build!(|k| (s.z[k] - s.mean[k]) * inverse[k]);
+    let log_ratio = log_prob_of(noise, s.log_std) - s.old_log_prob;
+    let ratio = log_ratio.exp();
+    let free = ratio * s.advantage;
+    let clipped = ratio.clamp(L::of(1.0 - w.clip), L::of(1.0 + w.clip)) * s.advantage;
+    // The gradient flows where the free product is the smaller.
+    let d_log_prob = L::select(free.le(clipped), -free, L::zero()) * share;
+
+    let squashed = each!(s.mean, |x| x.tanh());
+    let magnitude = sum_of_squares(squashed);
+    let pull = share * L::of(2.0 * w.magnitude);
+    let error = s.value - s.ret;
+    Answer {
+        d_mean: build!(|k| {
+            let slope = (-squashed[k]).mul_add(squashed[k], one);
+            (d_log_prob * noise[k]).mul_add(inverse[k], squashed[k] * slope * pull)
+        }),
+        d_log_std: build!(|k| d_log_prob * noise[k].mul_add(noise[k], -one)),
+        d_value: error * share * L::of(w.value),
+        terms: [
+            -free.min(clipped),
+            error * error * L::of(0.5),
+            magnitude,
+            (ratio - one) - log_ratio,
+            L::select(L::of(w.clip).lt((ratio - one).abs()), one, L::zero()),
+        ],
+    }
+}

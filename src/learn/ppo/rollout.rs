@@ -1,0 +1,209 @@
+//! Collecting experience: every tile of 64 environments flies the whole rollout on one thread, policy, environment and
+//! resets included, while its state and activations stay in cache.
+
+use super::{Environment, Step};
+use crate::base::lane::{Bits, Kernel, LANES, Lane32, Level, build, dispatch, each};
+use crate::base::rng::{Philox, Stream, normals};
+use crate::learn::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
+use crate::learn::policy;
+use rayon::prelude::*;
+
+/// What a rollout of `T` steps gathers. A row is 16 environments at one step; rows lie `[tile][T][block of the tile]`, and
+/// within a row numbers lie `[feature][16]`.
+#[derive(Clone, Debug)]
+pub struct Rollout {
+    /// Rows of a tile: 4 T.
+    pub tile_rows: usize,
+    /// `[rows][observations][16]`
+    pub observations: Vec<f32>,
+    /// Unsquashed sampled actions, `[rows][4][16]`.
+    pub z: Vec<f32>,
+    /// `[rows][16]` each.
+    pub log_prob: Vec<f32>,
+    pub rewards: Vec<f32>,
+    pub values: Vec<f32>,
+    /// The critic at the last observation of a truncated episode, used only where `truncated`.
+    pub final_values: Vec<f32>,
+    /// Bit per lane, `[rows]`.
+    pub terminated: Vec<u16>,
+    pub truncated: Vec<u16>,
+    /// The critic after the last step, `[tiles][4][16]`.
+    pub last_values: Vec<f32>,
+}
+
+/// One tile's part of a [`Rollout`].
+pub struct TileRows<'a> {
+    pub observations: &'a mut [f32],
+    pub z: &'a mut [f32],
+    pub log_prob: &'a mut [f32],
+    pub rewards: &'a mut [f32],
+    pub values: &'a mut [f32],
+    pub final_values: &'a mut [f32],
+    pub terminated: &'a mut [u16],
+    pub truncated: &'a mut [u16],
+    pub last_values: &'a mut [f32],
+}
+
+impl Rollout {
+    /// Room for `tiles` tiles of 64 environments over `steps` steps.
+    pub fn new(tiles: usize, steps: usize, observations: usize) -> Self {
+        let tile_rows = steps * TILE_BLOCKS;
+        let rows = tiles * tile_rows;
+        let lanes = vec![0.0; rows * LANES];
+        Rollout {
+            tile_rows,
+            observations: vec![0.0; rows * observations * LANES],
+            z: vec![0.0; rows * policy::ACTIONS * LANES],
+            log_prob: lanes.clone(),
+            rewards: lanes.clone(),
+            values: lanes.clone(),
+            final_values: lanes,
+            terminated: vec![0; rows],
+            truncated: vec![0; rows],
+            last_values: vec![0.0; tiles * TILE_SAMPLES],
+        }
+    }
+
+    /// The tiles' parts, in order.
+    pub fn tiles(&mut self) -> Vec<TileRows<'_>> {
+        let tiles = self.last_values.len() / TILE_SAMPLES;
+        let (features, lanes) = (self.observations.len() / tiles, self.tile_rows * LANES);
+        let mut observations = self.observations.chunks_exact_mut(features);
+        let mut z = self.z.chunks_exact_mut(lanes * policy::ACTIONS);
+        let mut log_prob = self.log_prob.chunks_exact_mut(lanes);
+        let mut rewards = self.rewards.chunks_exact_mut(lanes);
+        let mut values = self.values.chunks_exact_mut(lanes);
+        let mut final_values = self.final_values.chunks_exact_mut(lanes);
+        let mut terminated = self.terminated.chunks_exact_mut(self.tile_rows);
+        let mut truncated = self.truncated.chunks_exact_mut(self.tile_rows);
+        let last_values = self.last_values.chunks_exact_mut(TILE_SAMPLES);
+        let mut next = move |last_values| {
+            Some(TileRows {
+                observations: observations.next()?,
+                z: z.next()?,
+                log_prob: log_prob.next()?,
+                rewards: rewards.next()?,
+                values: values.next()?,
+                final_values: final_values.next()?,
+                terminated: terminated.next()?,
+                truncated: truncated.next()?,
+                last_values,
+            })
+        };
+        last_values.filter_map(&mut next).collect()
+    }
+}
+
+/// A tile of environments between rollouts.
+#[derive(Clone)]
+pub struct Tile<E: Environment> {
+    /// Number of the tile's first environment.
+    first: u32,
+    saved: [E::Saved; TILE_BLOCKS],
+    /// What happened in the last rollout.
+    pub tally: E::Tally,
+}
+
+impl<E: Environment> Tile<E> {
+    /// Tile number `index` with fresh episodes.
+    pub fn new(environment: &E, index: usize) -> Self {
+        let first = (index * TILE_SAMPLES) as u32;
+        let saved = std::array::from_fn(|b| environment.start(first + (b * LANES) as u32));
+        Tile { first, saved, tally: E::Tally::default() }
+    }
+}
+
+/// Flies `steps` steps in every tile under the stochastic policy, on the current rayon pool. `first_step` is the number of
+/// steps flown before, part of the random numbers' counter.
+pub fn collect<E: Environment>(
+    level: Level,
+    environment: &E,
+    network: &Network<f32>,
+    rng: &Philox,
+    tiles: &mut [Tile<E>],
+    rollout: &mut Rollout,
+    first_step: u32,
+) {
+    let steps = rollout.tile_rows / TILE_BLOCKS;
+    tiles.par_iter_mut().zip(rollout.tiles()).for_each(|(tile, out)| {
+        dispatch(level, Collect { environment, network, rng, tile, out, steps, first_step });
+    });
+}
+
+struct Collect<'a, E: Environment> {
+    environment: &'a E,
+    network: &'a Network<f32>,
+    rng: &'a Philox,
+    tile: &'a mut Tile<E>,
+    out: TileRows<'a>,
+    steps: usize,
+    first_step: u32,
+}
+
+impl<E: Environment> Kernel for Collect<'_, E> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lane32>(self) {
+        let Collect { environment, network, rng, tile, out, steps, first_step } = self;
+        let n = environment.observations();
+        let log_std = network.log_std();
+        let mut blocks: [E::Block<L>; TILE_BLOCKS] = std::array::from_fn(|b| environment.load(&tile.saved[b]));
+        let mut seen = vec![0.0f32; n * TILE_SAMPLES];
+        let mut scratch = network.scratch::<L>();
+        let (mut mean, mut value) = ([0.0f32; policy::ACTIONS * TILE_SAMPLES], [0.0f32; TILE_SAMPLES]);
+        tile.tally = E::Tally::default();
+
+        for t in 0..steps {
+            let step = first_step + t as u32;
+            for (b, block) in blocks.iter().enumerate() {
+                environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
+            }
+            network.forward::<L>(&seen, &mut scratch, &mut mean, &mut value);
+            let mut truncated_any = 0;
+            for (b, block) in blocks.iter_mut().enumerate() {
+                let row = t * TILE_BLOCKS + b;
+                let column = |k: usize| k * TILE_SAMPLES + b * LANES;
+                for k in 0..n {
+                    let from = &seen[column(k)..column(k) + LANES];
+                    out.observations[(row * n + k) * LANES..][..LANES].copy_from_slice(from);
+                }
+                let environments = L::Bits::from_array(build!(|i| tile.first + (b * LANES + i) as u32));
+                let w = rng.block(Stream::Action, environments, step, 0);
+                let ((n0, n1), (n2, n3)) = (normals::<L>(w[0], w[1]), normals::<L>(w[2], w[3]));
+                let mean: [L; 4] = build!(|k| L::from_slice(&mean[column(k)..]));
+                let (z, log_prob) = policy::sample(mean, each!(log_std, |s| L::splat(s)), [n0, n1, n2, n3]);
+                for (k, z) in z.iter().enumerate() {
+                    z.write(&mut out.z[(row * policy::ACTIONS + k) * LANES..]);
+                }
+                let lanes = row * LANES..(row + 1) * LANES;
+                log_prob.write(&mut out.log_prob[lanes.clone()]);
+                out.values[lanes.clone()].copy_from_slice(&value[b * LANES..][..LANES]);
+
+                let Step { reward, terminated, truncated } =
+                    environment.step(block, each!(z, |z| z.tanh()), &mut tile.tally);
+                reward.write(&mut out.rewards[lanes]);
+                out.terminated[row] = terminated;
+                out.truncated[row] = truncated;
+                truncated_any |= truncated;
+            }
+            // The critic sees where truncated episodes stopped, before they begin anew.
+            if truncated_any != 0 {
+                for (b, block) in blocks.iter().enumerate() {
+                    environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
+                }
+                network.forward_critic::<L>(&seen, &mut scratch, &mut value);
+                out.final_values[t * TILE_SAMPLES..(t + 1) * TILE_SAMPLES].copy_from_slice(&value);
+            }
+            for (b, block) in blocks.iter_mut().enumerate() {
+                let row = t * TILE_BLOCKS + b;
+                environment.reset(block, out.terminated[row] | out.truncated[row], &mut tile.tally);
+            }
+        }
+        for (b, block) in blocks.iter().enumerate() {
+            environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
+            tile.saved[b] = environment.save(block, &mut tile.tally);
+        }
+        network.forward_critic::<L>(&seen, &mut scratch, out.last_values);
+    }
+}

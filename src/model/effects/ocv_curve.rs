@@ -1,0 +1,28 @@
+//! Open-circuit voltage as an S over the charge instead of a line: V += k P3(2 c - 1), P3 the third Legendre polynomial.
+
+use super::{Card, Cell, Channel, Effect, Kind, Parameter};
+use crate::base::lane::Real;
+
+pub struct It;
+
+impl Effect for It {
+    const CARD: Card = Card {
+        id: "ocv_curve",
+        name: "S-shaped discharge curve",
+        sentence: "the voltage falls fast at first, then hardly, then fast again at the end of the pack",
+        kind: Kind::Battery,
+        parameters: &[Parameter { name: "k", unit: "V", low: -2.0, high: 2.0, typical: [0.2, 0.8] }],
+        channels: &[Channel::Voltage],
+        signature: "the voltage without load leaves the line as a cubic over the pack",
+        rivals: &["voltage_sag"],
+        manoeuvre: ("one whole pack from full to empty", &["circle", "forward", "backward"]),
+        shown: None,
+    };
+
+    #[inline(always)]
+    fn cell<R: Real>(k: &[R], cell: &mut Cell<R>) {
+        let x = (cell.charge + cell.charge).clamp(R::zero(), R::of(2.0)) - R::one();
+        let cubic = x * (x * x).mul_add(R::of(2.5), R::of(-1.5));
+        cell.drop = cell.drop - k[0] * cubic;
+    }
+}

@@ -1,0 +1,32 @@
+//! Air that moves over the ground: v_air = v - w.
+
+use super::{Air, Card, Channel, Effect, Kind, Parameter};
+use crate::base::lane::Real;
+
+pub struct It;
+
+const fn speed(name: &'static str) -> Parameter {
+    Parameter { name, unit: "m/s", low: -10.0, high: 10.0, typical: [0.5, 4.0] }
+}
+
+impl Effect for It {
+    const CARD: Card = Card {
+        id: "steady_wind",
+        name: "steady wind",
+        sentence: "the vehicle drifts to one side of the field, whichever way it points",
+        kind: Kind::Drag,
+        parameters: &[speed("wx"), speed("wy")],
+        channels: &[Channel::Force],
+        signature: "horizontal specific force is constant in the world and turns with the heading in the body",
+        rivals: &["rotor_drag", "drag_asymmetry", "accel_bias"],
+        manoeuvre: ("the same leg both ways, and circles", &["forward", "backward", "left", "right", "circle"]),
+        shown: None,
+    };
+
+    #[inline(always)]
+    fn air<R: Real>(k: &[R], air: &mut Air<R>) {
+        for (velocity, axis) in air.velocity.iter_mut().zip(&air.axes) {
+            *velocity = *velocity - axis[0].mul_add(k[0], axis[1] * k[1]);
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Rotors that slow down later than they speed up: tau of falling thrust is that of rising thrust plus a difference.
+
+use super::{Card, Channel, Effect, Kind, Lag, Parameter};
+use crate::base::lane::Real;
+
+pub struct It;
+
+impl Effect for It {
+    const CARD: Card = Card {
+        id: "thrust_asymmetric_lag",
+        name: "spin-down slower than spin-up",
+        sentence: "thrust dies away more slowly after a throttle cut than it builds up after a punch",
+        kind: Kind::Timing,
+        parameters: &[Parameter { name: "difference", unit: "s", low: -0.02, high: 0.08, typical: [0.004, 0.025] }],
+        channels: &[Channel::Force],
+        signature: "vertical specific force lags after throttle cuts, not after punches",
+        rivals: &["thrust_delay", "throttle_offset"],
+        manoeuvre: ("throttle steps up and down of the same size, and cuts", &["throttle-steps", "punch", "chop"]),
+        shown: Some(|k, [_, tau]| vec![("tau_up", tau, "s"), ("tau_down", tau + k[0], "s")]),
+    };
+
+    #[inline(always)]
+    fn lag<R: Real>(k: &[R], lag: &mut Lag<R>) {
+        lag.tau_down = (lag.tau_down + k[0]).max(R::of(0.0005));
+    }
+}

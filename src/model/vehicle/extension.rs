@@ -1,0 +1,114 @@
+//! What a vehicle does beyond the compact model: the sizes of its [`effects`], and how well they are known.
+
+use crate::base::check::{Check, Invalid};
+use crate::base::rng::Sequence;
+use crate::model::effects::{self, COUNT, MODEL};
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Effects of a vehicle.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Extension {
+    /// Where they were found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// By identifier, then by name of the parameter.
+    #[serde(default)]
+    pub sizes: BTreeMap<String, BTreeMap<String, f64>>,
+    /// Parameters as `effect.parameter`, and their covariance in this order: they are drawn jointly with it for each episode of
+    /// training. None: they are not randomised.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub uncertain: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub covariance: Vec<Vec<f64>>,
+}
+
+/// The index of `effect.parameter` among the numbers of all effects of the simulator.
+fn index(effect: &str, parameter: &str) -> Option<usize> {
+    let span = effects::span(effect).filter(|span| span.end <= COUNT)?;
+    let card = effects::card(effect)?;
+    card.parameters.iter().position(|p| p.name == parameter).map(|i| span.start + i)
+}
+
+impl Extension {
+    pub fn is_empty(&self) -> bool {
+        self.sizes.is_empty()
+    }
+
+    /// The parameters of all effects of the simulator, moved by `by`, within their bounds.
+    pub fn drawn(&self, by: &[f64; COUNT]) -> [f64; COUNT] {
+        let mut out = [0.0; COUNT];
+        for (effect, parameters) in &self.sizes {
+            for (name, value) in parameters {
+                if let (Some(i), Some(card)) = (index(effect, name), effects::card(effect)) {
+                    let bounds = card.parameters.iter().find(|p| p.name == name);
+                    let moved = value + by[i];
+                    out[i] = bounds.map_or(moved, |p| moved.clamp(p.low, p.high));
+                }
+            }
+        }
+        out
+    }
+
+    /// A draw of what is uncertain, to be added to the parameters.
+    pub fn draw(&self, rng: &mut Sequence) -> [f64; COUNT] {
+        let mut out = [0.0; COUNT];
+        let n = self.uncertain.len();
+        if n == 0 {
+            return out;
+        }
+        let covariance = DMatrix::from_fn(n, n, |i, j| self.covariance[i][j]);
+        let Some(cholesky) = covariance.cholesky() else { return out };
+        let normals: Vec<f64> = (0..n).map(|_| rng.normal()).collect();
+        for (row, key) in self.uncertain.iter().enumerate() {
+            let moved: f64 = (0..=row).map(|column| cholesky.l_dirty()[(row, column)] * normals[column]).sum();
+            if let Some(i) = key.split_once('.').and_then(|(effect, name)| index(effect, name)) {
+                out[i] = moved;
+            }
+        }
+        out
+    }
+}
+
+impl Check for Extension {
+    fn check(&self) -> Result<(), Invalid> {
+        for (effect, parameters) in &self.sizes {
+            let key = format!("sizes.{effect}");
+            let Some(card) = MODEL.iter().find(|card| card.id == effect) else {
+                let known: Vec<_> = MODEL.iter().map(|card| card.id).collect();
+                let advice = match effects::card(effect) {
+                    Some(_) => "effects of sensors and of chance do not belong to a vehicle".to_string(),
+                    None => format!("the effects are {}", known.join(", ")),
+                };
+                return Err(Invalid::new(&key, effect, "an effect of the simulator", &advice));
+            };
+            for (name, value) in parameters {
+                let key = format!("{key}.{name}");
+                let Some(p) = card.parameters.iter().find(|p| p.name == name) else {
+                    let known: Vec<_> = card.parameters.iter().map(|p| p.name).collect();
+                    return Err(Invalid::new(&key, name, &format!("one of {}", known.join(", ")), ""));
+                };
+                let expected = format!("{} to {} {}", p.low, p.high, p.unit);
+                Invalid::unless((p.low..=p.high).contains(value), &key, value, &expected, "")?;
+            }
+        }
+        let n = self.uncertain.len();
+        for key in &self.uncertain {
+            let sized = |(effect, name): (&str, &str)| self.sizes.get(effect).is_some_and(|p| p.contains_key(name));
+            let known = key.split_once('.').is_some_and(sized);
+            Invalid::unless(known, "uncertain", key, "a parameter among the sizes, such as axial_inflow.k", "")?;
+        }
+        let square = self.covariance.len() == n && self.covariance.iter().all(|row| row.len() == n);
+        Invalid::unless(
+            square,
+            "covariance",
+            format!("{} rows", self.covariance.len()),
+            &format!("{n} rows of {n}"),
+            "",
+        )?;
+        let positive = n == 0 || DMatrix::from_fn(n, n, |i, j| self.covariance[i][j]).cholesky().is_some();
+        Invalid::unless(positive, "covariance", "another matrix", "a positive definite matrix", "")
+    }
+}

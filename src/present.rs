@@ -1,0 +1,8 @@
+//! Keeping, measuring, showing: run folders, studies, reports, replays, benchmarks.
+
+pub mod bench;
+pub mod colour;
+pub mod replay;
+pub mod report;
+pub mod run;
+pub mod study;

@@ -1,0 +1,163 @@
+//! How fast this machine simulates and trains, and how near that is to what it could do at best.
+//!
+//! Every figure is steps of single vehicles a second, the best of several rounds, each long enough to time.
+
+use crate::base::lane::{Kernel, LANES, Lane32, Level, dispatch, each};
+use crate::base::peak;
+use crate::learn::nn::{HIDDEN, TILE_BLOCKS};
+use crate::learn::policy::ACTIONS;
+use crate::learn::ppo::Environment;
+use crate::learn::ppo::train::Training;
+use crate::model::dynamics::{Factors, Parameters, State};
+use crate::model::sim::Batch;
+use crate::model::track::Track;
+use crate::model::vehicle::Vehicle;
+use crate::race::config::Config;
+use crate::race::env::{DT, Race};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// A figure on one thread and on all.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Pair {
+    pub one_thread: f64,
+    pub all_threads: f64,
+}
+
+/// The measured figures.
+#[derive(Clone, Debug, Serialize)]
+pub struct Figures {
+    /// The model alone ([`crate::model::dynamics::step`]), commands held for a rollout's length, 2048 vehicles a thread.
+    pub physics_steps_per_s: Pair,
+    /// The whole environment: physics, gates, reward, resets, observation and all noise, under held commands; no policy.
+    pub environment_steps_per_s: Pair,
+    /// The environment with the policy: what training collects experience with.
+    pub rollout_steps_per_s: Pair,
+    /// Full training: rollout, advantages and all epochs of the update.
+    pub training_steps_per_s: Pair,
+    /// Single-precision multiply-add peak, operations a second, measured between the rounds.
+    pub peak_flops_per_s: Pair,
+    /// Share of the peak that training reaches on all threads, counting the networks' multiply-adds and nothing else.
+    pub training_peak_share: f64,
+    /// The same on one thread.
+    pub training_peak_share_one_thread: f64,
+    /// Operations of one environment step of training.
+    pub training_flops_per_step: f64,
+    pub threads: usize,
+    pub simd: String,
+}
+
+/// Operations of the networks for one environment step of training: one forward pass to collect it, and forward, weight
+/// gradients and input gradients (not of the first layer) in every epoch, a multiply-add counted as two.
+pub fn training_flops_per_step(observations: usize, epochs: usize) -> f64 {
+    let network = |outputs: usize| {
+        let upper = HIDDEN * HIDDEN + HIDDEN * outputs;
+        let forward = observations * HIDDEN + upper;
+        (forward, 2 * forward + upper)
+    };
+    let (actor, critic) = (network(ACTIONS), network(1));
+    2.0 * ((actor.0 + critic.0) + epochs * (actor.1 + critic.1)) as f64
+}
+
+/// Measures for about `time` in all.
+pub fn measure(
+    config: &Config,
+    track: &Track,
+    vehicle: &Vehicle,
+    level: Level,
+    threads: usize,
+    time: Duration,
+) -> Figures {
+    let race = Race::new(&config.env, track, vehicle, config.seed);
+    let part = time / 10;
+    let on = |threads: usize| -> [f64; 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+        pool.install(|| {
+            let physics = physics(&race, level, threads, config.ppo.rollout, part);
+            let environment = environment(&race, level, threads, config.ppo.rollout, part);
+            let mut training = Training::new(level, &race, &config.ppo, config.seed);
+            let batch = training.batch() as f64;
+            let rollout = batch / best(part, || training.collect(&race));
+            // The peak is taken before and after: clocks drift.
+            let before = peak::flops_per_s(level, part / 2);
+            let trained = batch / best(part, || training.iterate(0.0));
+            [physics, environment, rollout, trained, before.max(peak::flops_per_s(level, part / 2))]
+        })
+    };
+    let (one, all) = (on(1), on(threads));
+    let pair = |i: usize| Pair { one_thread: one[i], all_threads: all[i] };
+    let flops = training_flops_per_step(race.observations(), config.ppo.epochs);
+    Figures {
+        physics_steps_per_s: pair(0),
+        environment_steps_per_s: pair(1),
+        rollout_steps_per_s: pair(2),
+        training_steps_per_s: pair(3),
+        peak_flops_per_s: pair(4),
+        training_peak_share: all[3] * flops / all[4],
+        training_peak_share_one_thread: one[3] * flops / one[4],
+        training_flops_per_step: flops,
+        threads,
+        simd: level.to_string(),
+    }
+}
+
+/// Seconds of the fastest of the calls that fit into `time`, at least two.
+fn best<T>(time: Duration, mut work: impl FnMut() -> T) -> f64 {
+    let started = Instant::now();
+    let (mut best, mut rounds) = (f64::INFINITY, 0);
+    while rounds < 2 || started.elapsed() < time {
+        let begin = Instant::now();
+        black_box(work());
+        best = best.min(begin.elapsed().as_secs_f64());
+        rounds += 1;
+    }
+    best
+}
+
+fn physics(race: &Race, level: Level, threads: usize, steps: usize, time: Duration) -> f64 {
+    let n = 2048 * threads;
+    let start = State::new([0.0; 3], [5.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0; 4], race.vehicle.battery.full_v);
+    let parameters = Parameters::new(&race.vehicle, &Factors::NOMINAL, DT);
+    let mut batch = Batch::new(&vec![(start, parameters); n]);
+    let actions: Vec<_> = (0..n).map(|i| [0.1, -0.1, 0.01 * (i % 10) as f32, race.hover_command as f32]).collect();
+    (n * steps) as f64 / best(time, || batch.advance(level, &actions, steps))
+}
+
+fn environment(race: &Race, level: Level, threads: usize, steps: usize, time: Duration) -> f64 {
+    let blocks = 2048 / LANES * threads;
+    let mut saved: Vec<_> = (0..blocks).map(|b| race.start((b * LANES) as u32)).collect();
+    let seconds = best(time, || {
+        saved.par_chunks_mut(TILE_BLOCKS).for_each(|tile| dispatch(level, Fly { race, tile, steps }));
+    });
+    (blocks * LANES * steps) as f64 / seconds
+}
+
+struct Fly<'a> {
+    race: &'a Race,
+    tile: &'a mut [<Race as Environment>::Saved],
+    steps: usize,
+}
+
+impl Kernel for Fly<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lane32>(self) {
+        let race = self.race;
+        let mut seen = vec![0.0f32; race.observations() * LANES];
+        let mut tally = Default::default();
+        let action = each!([0.02, -0.02, 0.01, race.hover_command], |x| L::of(x));
+        for saved in self.tile {
+            let mut block = race.load::<L>(saved);
+            for _ in 0..self.steps {
+                race.observe(&block, &mut seen, LANES);
+                black_box(&mut seen);
+                let step = Environment::step(race, &mut block, action, &mut tally);
+                race.reset(&mut block, step.terminated | step.truncated, &mut tally);
+            }
+            *saved = race.save(&block, &mut tally);
+        }
+        black_box(&tally);
+    }
+}

@@ -1,0 +1,22 @@
+//! Pictures of a run. They draw numbers and compute none.
+
+pub mod commands;
+pub mod diagnosis;
+pub mod figures;
+pub mod identification;
+pub mod lap;
+mod map;
+mod page;
+mod plot;
+pub mod replay;
+pub mod run;
+pub mod spread;
+pub mod study;
+pub mod training;
+
+pub use page::digits;
+
+/// The error of a drawing, as text.
+pub fn drawing(error: impl std::fmt::Display) -> anyhow::Error {
+    anyhow::anyhow!("a figure could not be drawn: {error}")
+}

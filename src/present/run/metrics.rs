@@ -1,0 +1,127 @@
+//! The training log: one row of named numbers an iteration.
+
+use crate::base::check::BadInput;
+use crate::base::stats;
+use crate::learn::ppo::train::Iteration;
+use crate::race::env::reward::TERMS;
+use crate::race::env::tally::Tally;
+use crate::race::env::terminate::CAUSES;
+use std::path::Path;
+use std::time::SystemTime;
+
+/// Name of the file, in a run folder.
+pub const METRICS: &str = "metrics.csv";
+
+/// One iteration's numbers.
+#[derive(Clone, Debug)]
+pub struct Row {
+    pub wall: SystemTime,
+    pub steps: u64,
+    /// Name and value; not a number where there was nothing to average over. Names are the same in every row.
+    pub values: Vec<(String, f64)>,
+}
+
+impl Row {
+    /// What `iteration` reports. `seconds` is how long it took.
+    pub fn new(iteration: &Iteration<Tally>, seconds: f64) -> Self {
+        let Iteration { tally, losses, .. } = iteration;
+        let per_episode = |sum: f64| sum / tally.episodes();
+        let returns: Vec<f64> = tally.returns.iter().copied().map(f64::from).collect();
+        let mut values: Vec<(String, f64)> = [
+            // Seconds of the budget used.
+            ("time/seconds", iteration.seconds),
+            // Environment steps a second over this iteration: 1e6 and more on two modern cores.
+            ("time/steps_per_s", iteration.batch as f64 / seconds),
+            // Over the episodes that ended in this iteration. Return and gates should rise to the end.
+            ("episode/return_median", stats::quantile(&returns, 0.5)),
+            ("episode/gates", per_episode(tally.episode_gates)),
+            ("episode/steps", per_episode(tally.episode_steps)),
+            ("episode/count", tally.episodes()),
+            ("episode/laps", tally.laps),
+            ("ppo/learning_rate", iteration.learning_rate),
+            ("ppo/loss", losses.total),
+            ("ppo/surrogate", losses.surrogate),
+            ("ppo/value_loss", losses.value),
+            ("ppo/entropy", losses.entropy),
+            ("ppo/action_magnitude", losses.magnitude),
+            // Healthy below about 0.02.
+            ("ppo/approx_kl", losses.approx_kl),
+            // Healthy at 0.05 to 0.3.
+            ("ppo/clip_fraction", losses.clip_fraction),
+            ("ppo/gradient_norm", losses.gradient_norm),
+            // Rises towards 1 while the critic keeps up.
+            ("ppo/explained_variance", iteration.explained_variance),
+            // Should fall slowly; near 0 exploration has ended.
+            ("ppo/action_std", iteration.std),
+        ]
+        .map(|(name, value)| (name.to_string(), value))
+        .into();
+        // Mean of each term a step; their sum is the reward.
+        values.extend(TERMS.iter().zip(tally.terms).map(|(name, sum)| (format!("reward/{name}"), sum / tally.steps)));
+        // Share of the ended episodes.
+        values.extend(CAUSES.iter().zip(tally.causes).map(|(name, n)| (format!("ended/{name}"), per_episode(n))));
+        values.push(("ended/horizon".into(), per_episode(tally.truncated)));
+        Self { wall: SystemTime::now(), steps: iteration.steps, values }
+    }
+
+    /// The value called `name`, where it is a number.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.values.iter().find(|(known, _)| known == name).map(|(_, value)| *value).filter(|value| value.is_finite())
+    }
+}
+
+/// All rows as CSV, with a header; cells without a number are empty.
+pub fn to_csv(rows: &[Row]) -> anyhow::Result<Vec<u8>> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    if let Some(first) = rows.first() {
+        let names = first.values.iter().map(|(name, _)| name.clone());
+        csv.write_record(["steps".to_string()].into_iter().chain(names))?;
+    }
+    for row in rows {
+        let cell = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
+        let cells = row.values.iter().map(|(_, value)| cell(*value));
+        csv.write_record([row.steps.to_string()].into_iter().chain(cells))?;
+    }
+    Ok(csv.into_inner()?)
+}
+
+/// Columns of the CSV file at `path` by name, row by row; nothing where a cell is empty.
+pub fn read<const N: usize>(path: &Path, names: [&str; N]) -> Result<Vec<[Option<f64>; N]>, BadInput> {
+    let failed = |found: String| BadInput::new(path.display(), found, "the log of a training, metrics.csv", "");
+    let mut csv = csv::Reader::from_path(path).map_err(|error| failed(error.to_string()))?;
+    let header = csv.headers().map_err(|error| failed(error.to_string()))?.clone();
+    let mut places = [0; N];
+    for (place, name) in places.iter_mut().zip(names) {
+        *place = header.iter().position(|known| known == name).ok_or_else(|| failed(format!("no column `{name}`")))?;
+    }
+    let mut rows = Vec::new();
+    for record in csv.records() {
+        let record = record.map_err(|error| failed(error.to_string()))?;
+        rows.push(places.map(|place| record.get(place).and_then(|cell| cell.parse().ok())));
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_is_read_as_it_was_written() {
+        let values = vec![("a/b".to_string(), 1.5), ("c".to_string(), f64::NAN)];
+        let row = Row { wall: SystemTime::UNIX_EPOCH, steps: 64, values };
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), to_csv(&[row]).unwrap()).unwrap();
+        assert_eq!(read(file.path(), ["c", "steps", "a/b"]).unwrap(), [[None, Some(64.0), Some(1.5)]]);
+        assert!(read(file.path(), ["d"]).unwrap_err().to_string().contains("`d`"));
+    }
+
+    #[test]
+    fn nothing_to_average_over_is_an_empty_cell() {
+        let values = vec![("a/b".to_string(), 1.5), ("c".to_string(), f64::NAN)];
+        let row = Row { wall: SystemTime::UNIX_EPOCH, steps: 64, values };
+        assert_eq!(String::from_utf8(to_csv(std::slice::from_ref(&row)).unwrap()).unwrap(), "steps,a/b,c\n64,1.5,\n");
+        assert_eq!((row.get("a/b"), row.get("c"), row.get("d")), (Some(1.5), None, None));
+        assert!(to_csv(&[]).unwrap().is_empty());
+    }
+}

@@ -1,0 +1,92 @@
+//! The race as the learner sees it.
+
+use super::observe::OBSERVATIONS;
+use super::reset::{self, Place};
+use super::reward::TERMS;
+use super::tally::Tally;
+use super::{Block, Race, lanes};
+use crate::base::lane::{LANES, Lane, Lane32, Portable, Real};
+use crate::base::rng::Stream;
+use crate::learn::ppo::{Environment, Step};
+
+impl Environment for Race {
+    type Block<L: Lane32> = Block<L>;
+    type Saved = Block<Portable<f32>>;
+    type Tally = Tally;
+
+    fn observations(&self) -> usize {
+        OBSERVATIONS
+    }
+
+    fn start(&self, first: u32) -> Self::Saved {
+        let mut block = self.empty_block::<Portable<f32>>(first);
+        for lane in 0..LANES {
+            self.restart(&mut block, lane);
+            // The first episodes are of different ages, so that the horizon does not end them all at once.
+            let mut rng = self.rng.sequence(Stream::Reset, first + lane as u32, u32::MAX);
+            block.clock.set(lane, (rng.unit() * f64::from(self.config.horizon_steps)).floor() as f32);
+        }
+        block
+    }
+
+    #[inline(always)]
+    fn load<L: Lane32>(&self, saved: &Self::Saved) -> Block<L> {
+        saved.map(|x| L::from_array(x.0))
+    }
+
+    #[inline(always)]
+    fn save<L: Lane32>(&self, block: &Block<L>, tally: &mut Tally) -> Self::Saved {
+        for (sum, term) in tally.terms.iter_mut().zip(block.terms) {
+            *sum += f64::from(term.sum());
+        }
+        let mut saved = block.map(|x| Portable(x.to_array()));
+        saved.terms = [Portable::of(0.0); TERMS.len()];
+        saved
+    }
+
+    #[inline(always)]
+    fn observe<L: Lane32>(&self, block: &Block<L>, out: &mut [f32], stride: usize) {
+        Block::observe(block, self, out, stride);
+    }
+
+    #[inline(always)]
+    fn step<L: Lane32>(&self, block: &mut Block<L>, action: [L; 4], tally: &mut Tally) -> Step<L> {
+        let outcome = Block::step(block, self, action);
+        tally.steps += LANES as f64;
+        tally.gates += f64::from(outcome.passed.count_ones());
+        for lane in lanes(outcome.passed) {
+            let passed = block.passed[lane];
+            tally.laps += f64::from(u8::from(passed > 1 && (passed - 1).is_multiple_of(self.gates.len() as u32)));
+        }
+        for (count, lanes) in tally.causes.iter_mut().zip(outcome.causes) {
+            *count += f64::from(lanes.count_ones());
+        }
+        tally.truncated += f64::from(outcome.truncated.count_ones());
+        let reward = L::select(outcome.reward.is_finite(), outcome.reward, L::zero());
+        Step { reward, terminated: outcome.terminated as u16, truncated: outcome.truncated as u16 }
+    }
+
+    #[inline(always)]
+    fn reset<L: Lane32>(&self, block: &mut Block<L>, ended: u16, tally: &mut Tally) {
+        for lane in lanes(u32::from(ended)) {
+            tally.returns.push(block.gathered.get(lane));
+            tally.episode_gates += f64::from(block.passed[lane]);
+            tally.episode_steps += f64::from(block.clock.get(lane));
+            self.restart(block, lane);
+        }
+    }
+
+    fn with_penalties(&self, share: f64) -> Self {
+        let mut race = self.clone();
+        race.config.reward.action_change *= share;
+        race
+    }
+}
+
+impl Race {
+    fn restart<L: Lane32>(&self, block: &mut Block<L>, lane: usize) {
+        let mut rng = self.rng.sequence(Stream::Reset, block.first + lane as u32, block.step);
+        let start = reset::draw(self, &mut rng, Place::Mixed, None);
+        block.begin(self, lane, &start);
+    }
+}
