@@ -3,26 +3,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use crate::{files, read, top};
+
 /// From the ground up.
 const FLOORS: [&str; 8] = ["base", "model", "learn", "race", "flight", "insight", "present", "cli"];
 
 /// A module's path below the crate, such as `["model", "dynamics", "drag"]`.
 type Module = Vec<String>;
 
-fn files(folder: &Path, out: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).expect("readable") {
-        let path = entry.expect("readable").path();
-        if path.is_dir() {
-            files(&path, out);
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            out.push(path);
-        }
-    }
-}
-
 /// The code of a file without comments and without its own tests.
 fn code(path: &Path) -> String {
-    let text = std::fs::read_to_string(path).expect("readable");
+    let text = read(path);
     let text = text.split("#[cfg(test)]").next().unwrap_or_default();
     text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
@@ -86,10 +77,8 @@ fn named(module: &Module, code: &str) -> Vec<Module> {
 
 /// For each folder, which of its rooms imports which.
 fn edges() -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>>> {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut all = Vec::new();
-    files(&src, &mut all);
-    let modules: BTreeMap<Module, PathBuf> = all
+    let src = top().join("src");
+    let modules: BTreeMap<Module, PathBuf> = files("src", "rs")
         .into_iter()
         .map(|path| {
             let inside = path.strip_prefix(&src).expect("below src").with_extension("");
