@@ -8,8 +8,10 @@
 // Samples, axes and channels index several arrays at once here.
 #![allow(clippy::needless_range_loop)]
 
+pub mod actuator_response;
 pub mod adequacy;
-pub mod columns;
+pub mod candidates;
+pub mod disambiguate;
 pub mod drift;
 pub mod extend;
 pub mod figures;
@@ -21,6 +23,7 @@ pub mod horizon;
 pub mod judge;
 pub mod kinematics;
 pub mod model;
+pub mod oscillation;
 pub mod place;
 pub mod plan;
 pub mod predict;
@@ -28,10 +31,7 @@ pub mod problem;
 pub mod random;
 pub mod rank;
 pub mod record;
-pub mod respond;
-pub mod ringing;
 pub mod select;
-pub mod settle;
 pub mod skew;
 pub mod structure;
 pub mod trial;
@@ -46,7 +46,7 @@ use finding::{Diagnosis, Finding, Residual, Status, Verdict};
 use judge::{Judge, Judged};
 use model::Model;
 use problem::Problem;
-use record::Record;
+use record::FlightRecord;
 use select::{Added, Selection};
 use std::collections::BTreeMap;
 use structure::NAMES;
@@ -66,8 +66,8 @@ pub struct Diagnosed {
 /// Flights, ready to be held against `vehicle`.
 pub fn problem(logs: Vec<Quality>, vehicle: &Vehicle) -> Problem {
     let data = Data::new(logs);
-    let one = |f| Record::new(f, record::full_rate(vehicle, &f.quality));
-    let records: Vec<Record> = data.flights.iter().map(one).collect();
+    let one = |f| FlightRecord::new(f, record::full_rate(vehicle, &f.quality));
+    let records: Vec<FlightRecord> = data.flights.iter().map(one).collect();
     let begin: Vec<f64> =
         records.iter().map(|r| r.volts.first().map_or(vehicle.battery.full_v, |first| first.1)).collect();
     let mut model = Model::new(vehicle, &begin);
@@ -83,8 +83,8 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let usable_s = logs.iter().map(|q| crate::flight::spans::length(&q.usable)).sum();
     let problem = problem(logs, vehicle);
     let mut selection = select::select(&problem, watch);
-    settle::clocks(&problem, &mut selection);
-    let lost = settle::chance(&problem, &mut selection);
+    disambiguate::clocks(&problem, &mut selection);
+    let lost = disambiguate::chance(&problem, &mut selection);
     watch("judging", 0.85);
     let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
     let before = structure::search(&problem, &selection.base.state, &selection.base.residual);

@@ -158,7 +158,7 @@ impl<R: Real> State<R> {
     #[inline(always)]
     pub fn body_rates(&self, p: &Parameters<R>) -> [R; 3] {
         if p.beyond.values.any() {
-            return extended::spin(p, self.command);
+            return extended::body_rates(p, self.command);
         }
         build!(|i| self.command[i] * p.max_rate[i])
     }
@@ -179,7 +179,7 @@ pub fn specific_force<R: Real>(s: &State<R>, p: &Parameters<R>) -> [R; 3] {
     let axes = body_axes(s.attitude);
     let velocity = build!(|i| dot(axes[i], s.velocity));
     if p.beyond.values.any() {
-        return extended::force(p, &extended::Moment::of(s, p, axes, velocity));
+        return extended::force(p, &extended::ForceInputs::of(s, p, axes, velocity));
     }
     force_in_body(&p.thrust, &p.drag, s.command[3], s.voltage, velocity)
 }

@@ -7,7 +7,9 @@
 mod stages;
 
 use crate::base::lane::{Lane, Real};
-pub use stages::{Air, Asked, Cell, Flow, Lag, Late, Sensed, Spin, Supply};
+pub use stages::{
+    Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, RelativeWind, Sensed, Setpoint, ThrustInput,
+};
 
 /// What a person and the diagnosis have to know about an effect.
 #[derive(Debug)]
@@ -18,11 +20,11 @@ pub struct Card {
     pub name: &'static str,
     /// What it means to a pilot, in one sentence.
     pub sentence: &'static str,
-    pub kind: Kind,
+    pub kind: EffectKind,
     /// All are 0 where the effect is absent.
-    pub parameters: &'static [Parameter],
+    pub parameters: &'static [EffectParameter],
     /// Channels of the residual that it can show in.
-    pub channels: &'static [Channel],
+    pub channels: &'static [ResidualChannel],
     /// What gives it away.
     pub signature: &'static str,
     /// Identifiers of effects that look alike.
@@ -38,7 +40,7 @@ pub type Shown = fn(&[f64], [f64; 2]) -> Vec<(&'static str, f64, &'static str)>;
 
 /// A parameter of an effect.
 #[derive(Debug)]
-pub struct Parameter {
+pub struct EffectParameter {
     pub name: &'static str,
     pub unit: &'static str,
     /// Bounds of the search.
@@ -50,7 +52,7 @@ pub struct Parameter {
 
 /// Where an effect belongs, and so what is done about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum EffectKind {
     /// Extends the simulator.
     Timing,
     Thrust,
@@ -64,7 +66,7 @@ pub enum Kind {
 
 /// A residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Channel {
+pub enum ResidualChannel {
     /// Gyro less simulated body rate, rad/s.
     Rate,
     /// Accelerometer less simulated specific force, m/s2.
@@ -83,91 +85,126 @@ pub trait Effect {
     const CARD: Card;
     /// When commands arrive.
     #[inline(always)]
-    fn late<R: Real>(_k: &[R], _late: &mut Late<R>) {}
+    fn command_delay<R: Real>(_k: &[R], _delay: &mut CommandDelay<R>) {}
     /// Commands as they were sent, before the lag.
     #[inline(always)]
-    fn ask<R: Real>(_k: &[R], _asked: &mut Asked<R>) {}
+    fn setpoint<R: Real>(_k: &[R], _setpoint: &mut Setpoint<R>) {}
     /// How rates and thrust follow.
     #[inline(always)]
-    fn lag<R: Real>(_k: &[R], _lag: &mut Lag<R>) {}
+    fn actuator<R: Real>(_k: &[R], _actuator: &mut Actuator<R>) {}
     /// From filtered commands to body rates.
     #[inline(always)]
-    fn spin<R: Real>(_k: &[R], _spin: &mut Spin<R>) {}
+    fn body_rates<R: Real>(_k: &[R], _body: &mut BodyRates<R>) {}
     /// What the load takes from the voltage.
     #[inline(always)]
-    fn cell<R: Real>(_k: &[R], _cell: &mut Cell<R>) {}
+    fn battery_load<R: Real>(_k: &[R], _battery: &mut BatteryLoad<R>) {}
     /// What reaches the thrust curve.
     #[inline(always)]
-    fn supply<R: Real>(_k: &[R], _supply: &mut Supply<R>) {}
+    fn thrust_input<R: Real>(_k: &[R], _input: &mut ThrustInput<R>) {}
     /// The air's own motion.
     #[inline(always)]
-    fn air<R: Real>(_k: &[R], _air: &mut Air<R>) {}
+    fn relative_wind<R: Real>(_k: &[R], _wind: &mut RelativeWind<R>) {}
     /// Thrust and drag.
     #[inline(always)]
-    fn flow<R: Real>(_k: &[R], _flow: &mut Flow<R>) {}
+    fn aerodynamic_forces<R: Real>(_k: &[R], _forces: &mut AerodynamicForces<R>) {}
     /// What the sensors make of the truth.
     fn sense(_k: &[f64], _sensed: &mut Sensed) {}
 }
 
 macro_rules! effects {
-    (model: $($model:ident)*; log: $($log:ident)*;) => {
+    (model: $($model:ident::$Model:ident)*; log: $($log:ident::$Log:ident)*;) => {
         $(mod $model;)*
         $(mod $log;)*
         /// Cards of the effects that extend the simulator.
-        pub const MODEL: [&Card; [$(stringify!($model)),*].len()] = [$(&$model::It::CARD),*];
+        pub const MODEL: [&Card; [$(stringify!($model)),*].len()] = [$(&$model::$Model::CARD),*];
         /// Cards of the effects of sensors and of chance, which are no dynamics.
-        pub const LOG: [&Card; [$(stringify!($log)),*].len()] = [$(&$log::It::CARD),*];
+        pub const LOG: [&Card; [$(stringify!($log)),*].len()] = [$(&$log::$Log::CARD),*];
 
-        #[allow(non_camel_case_types, clippy::enum_variant_names)]
-        enum Index { $($model),* }
-        #[allow(non_camel_case_types, clippy::enum_variant_names)]
-        enum LogIndex { $($log),* }
+        #[allow(clippy::enum_variant_names)]
+        enum Index { $($Model),* }
+        #[allow(clippy::enum_variant_names)]
+        enum LogIndex { $($Log),* }
 
-        effects!(@stage $($model)*; late Late, ask Asked, lag Lag, spin Spin, cell Cell, supply Supply, air Air, flow Flow,);
+        effects!(@stage $($model::$Model)*;
+            command_delay CommandDelay, setpoint Setpoint, actuator Actuator, body_rates BodyRates, battery_load BatteryLoad,
+            thrust_input ThrustInput, relative_wind RelativeWind, aerodynamic_forces AerodynamicForces,);
 
         /// Every sensor's effect on a reading; `k` holds the parameters of all of [`LOG`].
         #[inline(always)]
         pub fn sense(k: &[f64], sensed: &mut Sensed) {
             $({
-                const AT: usize = offset(&LOG, LogIndex::$log as usize);
-                const N: usize = $log::It::CARD.parameters.len();
+                const AT: usize = offset(&LOG, LogIndex::$Log as usize);
+                const N: usize = $log::$Log::CARD.parameters.len();
                 if k[AT..AT + N].iter().any(|k| *k != 0.0) {
-                    $log::It::sense(&k[AT..AT + N], sensed);
+                    $log::$Log::sense(&k[AT..AT + N], sensed);
                 }
             })*
         }
     };
-    (@stage $($model:ident)*; ) => {};
-    (@stage $($model:ident)*; $stage:ident $flow:ident, $($rest:tt)*) => {
+    (@stage $($model:ident::$Model:ident)*; ) => {};
+    (@stage $($model:ident::$Model:ident)*; $stage:ident $Stage:ident, $($rest:tt)*) => {
         #[doc = concat!("Stage `", stringify!($stage), "` of every effect that is present.")]
         #[inline(always)]
-        pub fn $stage<R: Real>(values: &Values<R>, flow: &mut $flow<R>) {
+        pub fn $stage<R: Real>(values: &EffectValues<R>, stage: &mut $Stage<R>) {
             $(
-                if values.active & 1 << Index::$model as u32 != 0 {
-                    const AT: usize = offset(&MODEL, Index::$model as usize);
-                    const N: usize = $model::It::CARD.parameters.len();
+                if values.active & 1 << Index::$Model as u32 != 0 {
+                    const AT: usize = offset(&MODEL, Index::$Model as usize);
+                    const N: usize = $model::$Model::CARD.parameters.len();
                     let k: [R; N] = crate::base::lane::build!(|i| values.numbers[AT + i]);
-                    $model::It::$stage(&k, flow);
+                    $model::$Model::$stage(&k, stage);
                 }
             )*
         }
-        effects!(@stage $($model)*; $($rest)*);
+        effects!(@stage $($model::$Model)*; $($rest)*);
     };
 }
 
 // The order is that of every stage: what scales the thrust comes before what adds to it, what scales everything last.
 effects! {
     model:
-        rate_delay yaw_delay thrust_delay rate_second_order rate_slew_limit
-        rate_expo response_voltage rate_cross_coupling gyroscopic_coupling yaw_authority_loss weak_motor thrust_asymmetric_lag
-        voltage_sag voltage_relaxation ocv_curve
-        voltage_compensation throttle_offset mixer_thrust_loss thrust_fade ground_effect propwash
-        axial_inflow translational_lift rate_thrust_coupling
-        rotor_drag drag_asymmetry body_lift vertical_drag steady_wind
-        mass_or_density;
+        rate_delay::RateDelay
+        yaw_delay::YawDelay
+        thrust_delay::ThrustDelay
+        rate_second_order::RateSecondOrder
+        rate_slew_limit::RateSlewLimit
+        rate_expo::RateExpo
+        response_voltage::ResponseVoltage
+        rate_cross_coupling::RateCrossCoupling
+        gyroscopic_coupling::GyroscopicCoupling
+        yaw_authority_loss::YawAuthorityLoss
+        weak_motor::WeakMotor
+        thrust_asymmetric_lag::ThrustAsymmetricLag
+        voltage_sag::VoltageSag
+        voltage_relaxation::VoltageRelaxation
+        ocv_curve::OcvCurve
+        voltage_compensation::VoltageCompensation
+        throttle_offset::ThrottleOffset
+        mixer_thrust_loss::MixerThrustLoss
+        thrust_fade::ThrustFade
+        ground_effect::GroundEffect
+        propwash::Propwash
+        axial_inflow::AxialInflow
+        translational_lift::TranslationalLift
+        rate_thrust_coupling::RateThrustCoupling
+        rotor_drag::RotorDrag
+        drag_asymmetry::DragAsymmetry
+        body_lift::BodyLift
+        vertical_drag::VerticalDrag
+        steady_wind::SteadyWind
+        mass_or_density::MassOrDensity;
     log:
-        stream_offset clock_skew velocity_lag command_dropout gusts
-        imu_lever_arm imu_misalignment accel_scale gyro_scale accel_bias gyro_bias vibration_rectification;
+        stream_offset::StreamOffset
+        clock_skew::ClockSkew
+        velocity_lag::VelocityLag
+        command_dropout::CommandDropout
+        gusts::Gusts
+        imu_lever_arm::ImuLeverArm
+        imu_misalignment::ImuMisalignment
+        accel_scale::AccelScale
+        gyro_scale::GyroScale
+        accel_bias::AccelBias
+        gyro_bias::GyroBias
+        vibration_rectification::VibrationRectification;
 }
 
 /// Where the parameters of effect `index` of `cards` begin among those of all.
@@ -198,24 +235,24 @@ pub fn span(id: &str) -> Option<std::ops::Range<usize>> {
 
 /// The parameters of all effects of the simulator.
 #[derive(Clone, Copy, Debug)]
-pub struct Values<R> {
+pub struct EffectValues<R> {
     pub numbers: [R; COUNT],
     /// Bit i: effect i of [`MODEL`] is present. What is absent costs a test of its bit.
     active: u64,
 }
 
-impl Values<f64> {
+impl EffectValues<f64> {
     /// Effects with a number that is not 0 are present.
     pub fn new(numbers: [f64; COUNT]) -> Self {
         let present = |i: usize| {
             let from = offset(&MODEL, i);
             numbers[from..from + MODEL[i].parameters.len()].iter().any(|k| *k != 0.0)
         };
-        Values { numbers, active: (0..MODEL.len()).filter(|&i| present(i)).fold(0, |all, i| all | 1 << i) }
+        EffectValues { numbers, active: (0..MODEL.len()).filter(|&i| present(i)).fold(0, |all, i| all | 1 << i) }
     }
 }
 
-impl<R: Copy> Values<R> {
+impl<R: Copy> EffectValues<R> {
     /// Whether any effect is present.
     #[inline(always)]
     pub fn any(&self) -> bool {
@@ -226,19 +263,19 @@ impl<R: Copy> Values<R> {
     #[inline(always)]
     pub fn shapes(&self) -> (bool, bool) {
         let has = |i: Index| self.active & 1 << i as u32 != 0;
-        (has(Index::rate_second_order), has(Index::rate_slew_limit))
+        (has(Index::RateSecondOrder), has(Index::RateSlewLimit))
     }
 
     /// Converts every number, in a fixed order.
     #[inline(always)]
-    pub fn map<S>(&self, f: impl FnMut(R) -> S) -> Values<S> {
-        Values { numbers: self.numbers.map(f), active: self.active }
+    pub fn map<S>(&self, f: impl FnMut(R) -> S) -> EffectValues<S> {
+        EffectValues { numbers: self.numbers.map(f), active: self.active }
     }
 }
 
-impl<L: Lane> Values<L> {
+impl<L: Lane> EffectValues<L> {
     /// Replaces the numbers of one lane; the block has every effect that one of its lanes has.
-    pub fn set_lane(&mut self, lane: usize, new: &Values<L::Elem>) {
+    pub fn set_lane(&mut self, lane: usize, new: &EffectValues<L::Elem>) {
         self.active |= new.active;
         self.numbers.iter_mut().zip(&new.numbers).for_each(|(own, &new)| own.set(lane, new));
     }
@@ -281,7 +318,7 @@ mod tests {
     fn bounds_hold_absence_and_the_typical() {
         for card in all() {
             assert!(!card.parameters.is_empty() && !card.channels.is_empty(), "{}", card.id);
-            for Parameter { name, low, high, typical: [least, most], .. } in card.parameters {
+            for EffectParameter { name, low, high, typical: [least, most], .. } in card.parameters {
                 assert!((*low..=*high).contains(&0.0), "{}.{name}", card.id);
                 assert!(0.0 < *least && least < most && most <= high, "{}.{name}", card.id);
             }

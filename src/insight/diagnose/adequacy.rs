@@ -1,11 +1,11 @@
 //! Whether what was found is enough: what structure is left, and which findings are in doubt beside it.
 
 use super::finding::Finding;
-use super::ringing;
+use super::oscillation;
 use super::select::Selection;
 use super::structure::{NAMES, Structure};
 use crate::base::stats::mean;
-use crate::model::effects::{self, Kind};
+use crate::model::effects::{self, EffectKind};
 
 /// Structure that nobody needs to care about, as a root mean square: rad/s, m/s2, V.
 const IDLE: [f64; 3] = [0.025, 0.08, 0.02];
@@ -79,9 +79,9 @@ pub fn doubt(
         return Some(format!("small beside {}, where structure remains: it may make up for its form", largest.name));
     }
     // What swings pulls like a drag that comes late.
-    let drag = effects::card(finding.effect).is_some_and(|card| card.kind == Kind::Drag);
+    let drag = effects::card(finding.effect).is_some_and(|card| card.kind == EffectKind::Drag);
     let most = structure.iter().filter_map(explained).fold(0.0, f64::max);
-    let swing = |s: &&Structure| s.along.is_some_and(ringing::is_swing) && s.structure_rms > most / MEMORY;
+    let swing = |s: &&Structure| s.along.is_some_and(oscillation::is_swing) && s.structure_rms > most / MEMORY;
     if let Some(left) = unexplained.iter().find(swing).filter(|_| drag) {
         return Some(format!("something swings in {}, which looks like drag too", left.channel));
     }

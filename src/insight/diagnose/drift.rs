@@ -5,7 +5,7 @@ use super::fit::{covariance, fit};
 use super::gram::{Grams, inverse};
 use super::judge::Judge;
 use super::model::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
-use super::problem::Values;
+use super::problem::ChannelValues;
 use crate::model::effects::{self, Card};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -92,7 +92,7 @@ fn cause(judge: &Judge) -> Option<Finding> {
     let unnamed = |card: &&Card| !point.free.contains(&span(card).start);
     let cards: Vec<&'static Card> = ABSORBED.iter().filter_map(|id| effects::card(id)).filter(unnamed).collect();
     let n = point.free.len();
-    let columns: Vec<Values> = cards
+    let columns: Vec<ChannelValues> = cards
         .iter()
         .map(|card| {
             let k = span(card).start;
@@ -103,7 +103,7 @@ fn cause(judge: &Judge) -> Option<Finding> {
                 .apply(&problem.secant(&point.state, &point.x, &[(k, size)], 1.0 / size), &problem.rows)
         })
         .collect();
-    let all: Vec<&Values> = point.white.iter().chain(&columns).chain([&residual]).collect();
+    let all: Vec<&ChannelValues> = point.white.iter().chain(&columns).chain([&residual]).collect();
     let grams = Grams::new(&all, &problem.rows, problem.blocks);
     let of_interest = |k: usize| THRUST.contains(&k) || DRAG.contains(&k);
     let main: Vec<usize> = (0..n).filter(|&i| of_interest(point.free[i])).collect();

@@ -19,7 +19,7 @@ const SHOWN: f64 = 0.05;
 const FELL: f64 = 0.02;
 
 /// Everything that is drawn of one channel. Before is the compact model, fitted to the flights; after is the same with what was found.
-pub struct Channel {
+pub struct ChannelFigure {
     pub name: &'static str,
     pub unit: &'static str,
     /// Root mean squares of the residual, and of what is unpredictable in it.
@@ -36,7 +36,7 @@ pub struct Channel {
 }
 
 /// The channels that a finding explains or that have structure, those with structure first, then by what was gained.
-pub fn channels(diagnosed: &Diagnosed) -> Vec<Channel> {
+pub fn channels(diagnosed: &Diagnosed) -> Vec<ChannelFigure> {
     let shown = |c: usize, fell: f64| {
         let name = NAMES[c].0;
         // Constant errors of the IMU are part of the fit before as well as after: there is nothing to see in them.
@@ -67,7 +67,7 @@ fn rms(residual: &[f64]) -> f64 {
     mean(&residual.iter().map(|r| r * r).collect::<Vec<_>>()).sqrt()
 }
 
-fn channel(diagnosed: &Diagnosed, c: usize) -> Channel {
+fn channel(diagnosed: &Diagnosed, c: usize) -> ChannelFigure {
     let Diagnosed { diagnosis, problem, selection, .. } = diagnosed;
     let (name, unit) = NAMES[c];
     let (before, after) = (&selection.base.residual[c], &selection.point.residual[c]);
@@ -75,7 +75,7 @@ fn channel(diagnosed: &Diagnosed, c: usize) -> Channel {
     let windows = windows::worst(problem, c, &runs, [before, after]);
     let along = |all: &[Structure]| all.iter().find(|s| s.channel == name).and_then(|s| s.along);
     let signal = along(&diagnosis.structure_before).or(along(&diagnosis.structure));
-    Channel {
+    ChannelFigure {
         name,
         unit,
         before: rms(before),

@@ -94,7 +94,7 @@ pub struct Drift {
 
 /// An effect that these flights could not show, or not at a size that matters.
 #[derive(Clone, Debug, Serialize)]
-pub struct Hidden {
+pub struct NotDetectable {
     pub effect: &'static str,
     pub why: String,
     /// The smallest size that they would show, and its unit.
@@ -144,7 +144,7 @@ pub struct Diagnosis {
     /// By impact.
     pub findings: Vec<Finding>,
     pub unexplained: Vec<Structure>,
-    pub not_detectable: Vec<Hidden>,
+    pub not_detectable: Vec<NotDetectable>,
     pub detectable: Vec<Detectable>,
     pub drift: Vec<Drift>,
     /// One step ahead, on the flight that was fitted.

@@ -2,7 +2,7 @@
 
 use super::gram::{Grams, inverse};
 use super::predict::CHANNELS;
-use super::problem::{Problem, State, Values};
+use super::problem::{ChannelValues, Predictions, Problem};
 use super::whiten::Whitener;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -15,27 +15,27 @@ const ENOUGH: f64 = 0.05;
 
 /// Where a fit stands, with everything linear about it.
 #[derive(Clone)]
-pub struct Point {
+pub struct FitPoint {
     pub x: Vec<f64>,
-    pub state: State,
+    pub state: Predictions,
     /// Numbers that are fitted.
     pub free: Vec<usize>,
     /// Change of the prediction by each of them, whitened.
-    pub white: Vec<Values>,
+    pub white: Vec<ChannelValues>,
     /// Measured less predicted.
-    pub residual: Values,
+    pub residual: ChannelValues,
     /// Whitened squares of each stretch of time.
     pub cost: Vec<f64>,
 }
 
-impl Point {
+impl FitPoint {
     pub fn total(&self) -> f64 {
         self.cost.iter().sum()
     }
 }
 
 /// Whitened squares by stretch of time.
-pub fn costs(problem: &Problem, white: &Values) -> Vec<f64> {
+pub fn costs(problem: &Problem, white: &ChannelValues) -> Vec<f64> {
     let mut out = vec![0.0; problem.blocks];
     for c in 0..CHANNELS {
         for (row, w) in problem.rows[c].iter().zip(&white[c]) {
@@ -55,7 +55,7 @@ fn penalty(problem: &Problem, free: &[usize], x: &[f64]) -> f64 {
 }
 
 /// Fits the numbers `free`, starting from `x`.
-pub fn fit(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) -> Point {
+pub fn fit(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) -> FitPoint {
     let mut x = x.to_vec();
     let mut state = problem.predict(&x);
     let mut residual = problem.residuals(&state);
@@ -82,29 +82,29 @@ pub fn fit(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) ->
             }
         }
         if !moved || renewal == RENEWALS {
-            return Point { x, state, free: free.to_vec(), white, residual, cost };
+            return FitPoint { x, state, free: free.to_vec(), white, residual, cost };
         }
     }
     unreachable!("the last renewal returns")
 }
 
 /// The point `x` as it is, with what is linear about the numbers `free`.
-pub fn stay(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) -> Point {
+pub fn stay(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) -> FitPoint {
     let state = problem.predict(x);
     let residual = problem.residuals(&state);
     let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
     let white = whitened_slopes(problem, whitener, &state, x, free);
-    Point { x: x.to_vec(), state, free: free.to_vec(), white, residual, cost }
+    FitPoint { x: x.to_vec(), state, free: free.to_vec(), white, residual, cost }
 }
 
 /// [`Problem::slopes`], whitened.
 pub fn whitened_slopes(
     problem: &Problem,
     whitener: &Whitener,
-    state: &State,
+    state: &Predictions,
     x: &[f64],
     which: &[usize],
-) -> Vec<Values> {
+) -> Vec<ChannelValues> {
     which.par_iter().map(|&k| whitener.apply(&problem.slope(state, x, k), &problem.rows)).collect()
 }
 
@@ -112,8 +112,8 @@ pub fn whitened_slopes(
 fn step(
     problem: &Problem,
     gram: &DMatrix<f64>,
-    white: &[&Values],
-    residual: &Values,
+    white: &[&ChannelValues],
+    residual: &ChannelValues,
     x: &[f64],
     free: &[usize],
 ) -> Option<Vec<f64>> {
@@ -150,11 +150,11 @@ fn step(
 fn descend(
     problem: &Problem,
     whitener: &Whitener,
-    from: (&State, &[f64]),
+    from: (&Predictions, &[f64]),
     free: &[usize],
     step: &[f64],
     before: f64,
-) -> Option<Point> {
+) -> Option<FitPoint> {
     let (old, x) = from;
     let before = before + penalty(problem, free, x);
     for halving in 0..5 {
@@ -169,14 +169,14 @@ fn descend(
         let residual = problem.residuals(&state);
         let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
         if cost.iter().sum::<f64>() + penalty(problem, free, &next) < before {
-            return Some(Point { x: next, state, free: Vec::new(), white: Vec::new(), residual, cost });
+            return Some(FitPoint { x: next, state, free: Vec::new(), white: Vec::new(), residual, cost });
         }
     }
     None
 }
 
 /// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken as they are there.
-pub fn refit(problem: &Problem, whitener: &Whitener, point: &Point, own: &[usize], x: &[f64]) -> Point {
+pub fn refit(problem: &Problem, whitener: &Whitener, point: &FitPoint, own: &[usize], x: &[f64]) -> FitPoint {
     // Rates and forces hardly know of each other: what the numbers do not touch stays as it is.
     let all = || own.iter().map(|&k| &problem.model.numbers[k]);
     let (rates, forces) = (all().any(|n| n.rates), all().any(|n| n.forces));
@@ -190,10 +190,10 @@ pub fn refit(problem: &Problem, whitener: &Whitener, point: &Point, own: &[usize
     let state = problem.change(&point.state, &moved, x);
     let residual = problem.residuals(&state);
     let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
-    let mut at = Point { x: x.to_vec(), state, free: Vec::new(), white: Vec::new(), residual, cost };
+    let mut at = FitPoint { x: x.to_vec(), state, free: Vec::new(), white: Vec::new(), residual, cost };
     for _ in 0..CHORDS + 2 {
         let mine = whitened_slopes(problem, whitener, &at.state, &at.x, own);
-        let white: Vec<&Values> = kept.iter().map(|&j| &point.white[j]).chain(&mine).collect();
+        let white: Vec<&ChannelValues> = kept.iter().map(|&j| &point.white[j]).chain(&mine).collect();
         let gram = Grams::new(&white, &problem.rows, problem.blocks).sum;
         let whitened = whitener.apply(&at.residual, &problem.rows);
         let Some(step) = step(problem, &gram, &white, &whitened, &at.x, &free) else { break };
@@ -215,10 +215,10 @@ const GROUPS: usize = 20;
 
 /// Covariance of the fitted numbers of `point` by leaving out one stretch of time after the other (the cluster jackknife, CR3); wider where leaving out
 /// longer ones says so.
-pub fn covariance(problem: &Problem, whitener: &Whitener, point: &Point) -> Option<DMatrix<f64>> {
+pub fn covariance(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> Option<DMatrix<f64>> {
     let n = point.free.len();
     let residual = whitener.apply(&point.residual, &problem.rows);
-    let columns: Vec<&Values> = point.white.iter().chain([&residual]).collect();
+    let columns: Vec<&ChannelValues> = point.white.iter().chain([&residual]).collect();
     let grams = Grams::new(&columns, &problem.rows, problem.blocks);
     let prior = prior(problem, &point.free);
     let own: Vec<usize> = (0..n).collect();

@@ -1,9 +1,9 @@
 //! What the effects are worth on flight that was not used for fitting: the last flight where there are several, else the last 30 % of the time.
 
 use super::finding::{Ahead, Gain};
-use super::fit::{self, Point};
+use super::fit::{self, FitPoint};
 use super::horizon;
-use super::model::{BEGIN, Number};
+use super::model::{BEGIN, ModelNumber};
 use super::predict::CHANNELS;
 use super::problem::Problem;
 use super::select::{self, Selection};
@@ -22,7 +22,7 @@ pub struct HeldOut {
     pub horizons: Vec<Ahead>,
     /// Share of the achievable fall of the whitened squares; none where there is nothing to gain.
     pub captured: Option<f64>,
-    extended: Point,
+    extended: FitPoint,
     out: Vec<bool>,
 }
 
@@ -31,11 +31,11 @@ impl HeldOut {
     /// An effect that is only suspected is not in the extended model: there it is added.
     pub fn of_one(&self, problem: &Problem, change: &[f64], held: bool) -> BTreeMap<&'static str, Gain> {
         let sign = if held { 1.0 } else { -1.0 };
-        let moved = |((x, by), n): ((&f64, &f64), &Number)| (x + sign * by).clamp(n.low, n.high);
+        let moved = |((x, by), n): ((&f64, &f64), &ModelNumber)| (x + sign * by).clamp(n.low, n.high);
         let x: Vec<f64> = self.extended.x.iter().zip(change).zip(&problem.model.numbers).map(moved).collect();
         let state = problem.predict(&x);
         let residual = problem.residuals(&state);
-        let other = Point { x, state, free: Vec::new(), white: Vec::new(), residual, cost: Vec::new() };
+        let other = FitPoint { x, state, free: Vec::new(), white: Vec::new(), residual, cost: Vec::new() };
         let [without, with] = if held { [&other, &self.extended] } else { [&self.extended, &other] };
         let mut all = channels(problem, without, with, &self.out);
         all.retain(|_, gain| gain.before.is_finite() && gain.after.is_finite());
@@ -66,15 +66,15 @@ pub fn measure(problem: &Problem, selection: &Selection, kept: &Selection) -> He
     let last = problem.records.len() - 1;
     let (base, extended) = if last > 0 {
         let begin = [BEGIN + last];
-        let settled = |p: Point| {
+        let settled = |p: FitPoint| {
             let free = p.free.clone();
-            Point { free, ..fit::fit(problem, &test, &p.x, &begin) }
+            FitPoint { free, ..fit::fit(problem, &test, &p.x, &begin) }
         };
         (settled(base), settled(extended))
     } else {
         (base, extended)
     };
-    let squares = |p: &Point| fit::costs(problem, &test.apply(&p.residual, &problem.rows)).iter().sum::<f64>();
+    let squares = |p: &FitPoint| fit::costs(problem, &test.apply(&p.residual, &problem.rows)).iter().sum::<f64>();
     let (before, after) = (squares(&base), squares(&extended));
     let floor = after - select::left_to_gain(problem, &test, &extended, selection);
     let captured = (before > WORTH * floor).then(|| (before - after) / (before - floor).max(1e-9));
@@ -87,14 +87,14 @@ pub fn measure(problem: &Problem, selection: &Selection, kept: &Selection) -> He
     }
 }
 
-fn channels(problem: &Problem, base: &Point, extended: &Point, out: &[bool]) -> BTreeMap<&'static str, Gain> {
+fn channels(problem: &Problem, base: &FitPoint, extended: &FitPoint, out: &[bool]) -> BTreeMap<&'static str, Gain> {
     let mut all = BTreeMap::new();
     for c in 0..CHANNELS {
         let rows: Vec<usize> = (0..problem.rows[c].len()).filter(|&i| out[problem.rows[c][i].block as usize]).collect();
         if rows.len() < 20 || base.residual[c].is_empty() {
             continue;
         }
-        let rms = |p: &Point| mean(&rows.iter().map(|&i| p.residual[c][i].powi(2)).collect::<Vec<_>>()).sqrt();
+        let rms = |p: &FitPoint| mean(&rows.iter().map(|&i| p.residual[c][i].powi(2)).collect::<Vec<_>>()).sqrt();
         let measured: Vec<f64> = rows.iter().map(|&i| problem.measured[c][i]).collect();
         let middle = mean(&measured);
         let variance = mean(&measured.iter().map(|m| (m - middle).powi(2)).collect::<Vec<_>>());
@@ -106,18 +106,18 @@ fn channels(problem: &Problem, base: &Point, extended: &Point, out: &[bool]) -> 
     all
 }
 
-fn horizons(problem: &Problem, base: &Point, extended: &Point, out: &[bool]) -> Vec<Ahead> {
+fn horizons(problem: &Problem, base: &FitPoint, extended: &FitPoint, out: &[bool]) -> Vec<Ahead> {
     let f = problem.records.len() - 1;
     let record = &problem.records[f];
     let wanted = |i: usize| out[record.block[i] as usize];
-    let at = |p: &Point| horizon::errors(&problem.model, record, &p.state[f], &p.x, &wanted);
+    let at = |p: &FitPoint| horizon::errors(&problem.model, record, &p.state[f], &p.x, &wanted);
     let pairs = at(base).into_iter().zip(at(extended));
     pairs.filter(|(b, _)| b.starts > 0).map(|(before, after)| Ahead { before, after }).collect()
 }
 
 impl Whitener {
     /// The same, deaf to the stretches of time that are `out`.
-    pub fn without(&self, rows: &[Vec<super::problem::Row>; CHANNELS], out: &[bool]) -> Self {
+    pub fn without(&self, rows: &[Vec<super::problem::ResidualRow>; CHANNELS], out: &[bool]) -> Self {
         let mut copy = self.clone();
         for (c, weights) in copy.weights_mut().iter_mut().enumerate() {
             for (row, weight) in rows[c].iter().zip(weights.iter_mut()) {

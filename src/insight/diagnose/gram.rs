@@ -1,7 +1,7 @@
 //! Inner products of whitened columns, by stretch of time: every linear fit, test and interval is small algebra on them.
 
 use super::predict::CHANNELS;
-use super::problem::{Row, Values};
+use super::problem::{ChannelValues, ResidualRow};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ pub struct Grams {
 
 impl Grams {
     /// Of `columns`, whitened.
-    pub fn new(columns: &[&Values], rows: &[Vec<Row>; CHANNELS], blocks: usize) -> Self {
+    pub fn new(columns: &[&ChannelValues], rows: &[Vec<ResidualRow>; CHANNELS], blocks: usize) -> Self {
         let n = columns.len();
         let by_channel: Vec<Vec<DMatrix<f64>>> = (0..CHANNELS)
             .into_par_iter()
@@ -84,7 +84,7 @@ pub fn inverse(m: &DMatrix<f64>, prior: &[f64]) -> Option<DMatrix<f64>> {
 
 /// What one group of columns adds to another, judged by the stretches of time that agree.
 #[derive(Clone, Debug)]
-pub struct Score {
+pub struct ScoreTest {
     /// Expected change of the group's parameters.
     pub change: DVector<f64>,
     /// How much the whitened squares would fall.
@@ -101,7 +101,7 @@ pub struct Score {
 }
 
 /// The score test of columns `group` beside columns `rest` for column `residual`. `prior` is that of all columns.
-pub fn score(grams: &Grams, rest: &[usize], group: &[usize], residual: usize, prior: &[f64]) -> Option<Score> {
+pub fn score(grams: &Grams, rest: &[usize], group: &[usize], residual: usize, prior: &[f64]) -> Option<ScoreTest> {
     let g = &grams.sum;
     let rest_prior: Vec<f64> = rest.iter().map(|&i| prior[i]).collect();
     let inner = inverse(&Grams::pick(g, rest, rest), &rest_prior)?;
@@ -128,7 +128,7 @@ pub fn score(grams: &Grams, rest: &[usize], group: &[usize], residual: usize, pr
     }
     let robust = inverse(&spread, &vec![1e-300; group.len()])?;
     let evidence = (u.transpose() * robust * &u)[(0, 0)];
-    Some(Score {
+    Some(ScoreTest {
         gain: (u.transpose() * &change)[(0, 0)],
         change: change.column(0).into_owned(),
         evidence,

@@ -2,9 +2,9 @@
 
 use super::model::Model;
 use super::predict::Predicted;
-use super::record::Record;
+use super::record::FlightRecord;
 use crate::model::attitude::{body_axes, compose, dot, normalized, small_rotation};
-use crate::model::dynamics::extended::{self, Moment};
+use crate::model::dynamics::extended::{self, ForceInputs};
 use serde::Serialize;
 
 /// Moments at which the simulation is compared with the flight, s.
@@ -34,7 +34,7 @@ struct Reached {
 /// Errors of the model at `x`, whose prediction is `state`, over the flight between samples of which `wanted` holds.
 pub fn errors(
     model: &Model,
-    record: &Record,
+    record: &FlightRecord,
     state: &Predicted,
     x: &[f64],
     wanted: &dyn Fn(usize) -> bool,
@@ -70,7 +70,7 @@ pub fn errors(
 }
 
 /// Root mean square distance, m/s, of the velocities that two models reach after the longest time.
-pub fn apart(model: &Model, record: &Record, a: (&Predicted, &[f64]), b: (&Predicted, &[f64])) -> f64 {
+pub fn apart(model: &Model, record: &FlightRecord, a: (&Predicted, &[f64]), b: (&Predicted, &[f64])) -> f64 {
     let all = |_: usize| true;
     let (a, b) = (runs(model, record, a.0, a.1, &all), runs(model, record, b.0, b.1, &all));
     let last = AT_S.len() - 1;
@@ -85,7 +85,7 @@ pub fn apart(model: &Model, record: &Record, a: (&Predicted, &[f64]), b: (&Predi
 
 fn runs(
     model: &Model,
-    record: &Record,
+    record: &FlightRecord,
     state: &Predicted,
     x: &[f64],
     wanted: &dyn Fn(usize) -> bool,
@@ -122,7 +122,7 @@ fn runs(
             let middle = compose(attitude, half);
             let axes = body_axes(middle);
             let body = std::array::from_fn(|k| dot(axes[k], velocity));
-            let moment = Moment {
+            let inputs = ForceInputs {
                 command: state.thrust(i),
                 voltage: state.voltage[i],
                 axes,
@@ -132,7 +132,7 @@ fn runs(
                 rate_error: state.lag(i),
                 elapsed: record.time[i] - since,
             };
-            let force = extended::force(&p, &moment);
+            let force = extended::force(&p, &inputs);
             let before = velocity;
             for k in 0..3 {
                 let pushed: f64 = (0..3).map(|j| axes[j][k] * force[j]).sum();

@@ -1,16 +1,16 @@
 //! From the fit to findings: evidence, replication, size and what is left.
 
 use super::finding::{Finding, Status, Value};
-use super::fit::{Point, covariance};
+use super::fit::{FitPoint, covariance};
 use super::gram::{Grams, inverse, score};
 use super::horizon;
 use super::model::{TAU, span};
 use super::predict::{CHANNELS, kind};
-use super::problem::{Problem, Values};
+use super::problem::{ChannelValues, Problem};
 use super::select::{Added, Selection};
 use super::structure::NAMES;
 use crate::base::stats::mean;
-use crate::model::effects::{Card, Kind};
+use crate::model::effects::{Card, EffectKind};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
@@ -65,14 +65,14 @@ impl<'a> Judge<'a> {
     pub fn new(problem: &'a Problem, selection: &'a Selection) -> Self {
         let point = &selection.point;
         let residual = selection.whitener.apply(&point.residual, &problem.rows);
-        let columns: Vec<&Values> = point.white.iter().chain([&residual]).collect();
+        let columns: Vec<&ChannelValues> = point.white.iter().chain([&residual]).collect();
         let grams = Grams::new(&columns, &problem.rows, problem.blocks);
         let n = point.free.len();
         let covariance = covariance(problem, &selection.whitener, point).unwrap_or(DMatrix::zeros(n, n));
         Self { problem, selection, covariance, grams }
     }
 
-    fn point(&self) -> &Point {
+    fn point(&self) -> &FitPoint {
         &self.selection.point
     }
 
@@ -128,7 +128,7 @@ impl<'a> Judge<'a> {
 
     /// Change of the prediction that the effect makes, by channel, beside what the other numbers could take over, in physical units; and
     /// the numbers without it.
-    fn without(&self, card: &Card) -> (Vec<f64>, Values) {
+    fn without(&self, card: &Card) -> (Vec<f64>, ChannelValues) {
         let own = self.places(card);
         let n = self.point().free.len();
         let rest: Vec<usize> = (0..n).filter(|i| !own.contains(i)).collect();
@@ -278,7 +278,7 @@ impl<'a> Judge<'a> {
     }
 
     /// How far apart simulations with and without the effect are after a second, m/s; for sensors, what the error integrates to.
-    fn impact(&self, card: &Card, without: &[f64], change: &Values) -> f64 {
+    fn impact(&self, card: &Card, without: &[f64], change: &ChannelValues) -> f64 {
         let rms = |c: usize| mean(&change[c].iter().map(|x| x * x).collect::<Vec<_>>()).sqrt();
         let sensors: f64 = (0..3)
             .map(|k| rms(k) * 0.5 * G)
@@ -286,7 +286,7 @@ impl<'a> Judge<'a> {
             .chain((6..9).map(|c| rms(c) * 4.0 * 0.5 * G))
             .chain((9..12).map(|c| rms(c) * 4.0))
             .fold(0.0, f64::max);
-        if matches!(card.kind, Kind::Sensor | Kind::Random) {
+        if matches!(card.kind, EffectKind::Sensor | EffectKind::Random) {
             return sensors;
         }
         let model = &self.problem.model;
@@ -315,7 +315,7 @@ pub fn is_bounded(problem: &Problem, card: &Card, x: &[f64]) -> bool {
 /// Whether the size of an effect is one that anybody would notice: half the smallest of its typical ones.
 pub fn is_material(card: &Card, x: &[f64]) -> bool {
     let at = span(card);
-    let share = |(p, k): (&crate::model::effects::Parameter, usize)| (x[k] / p.typical[0]).powi(2);
+    let share = |(p, k): (&crate::model::effects::EffectParameter, usize)| (x[k] / p.typical[0]).powi(2);
     // A shape is no size.
     let sizes = card.parameters.iter().zip(at).filter(|(p, _)| !(p.name == "tau" && card.parameters.len() > 1));
     sizes.map(share).sum::<f64>().sqrt() >= 0.5

@@ -1,7 +1,7 @@
 //! What the IMU alone says of a flight: what it integrates to between two looks of the odometry.
 
 use super::model::Model;
-use super::record::Record;
+use super::record::FlightRecord;
 use crate::base::lane::build;
 use crate::model::attitude::{Quaternion, body_axes, compose, normalized, small_rotation};
 use crate::model::dynamics::extended;
@@ -10,7 +10,7 @@ use crate::model::effects::{self, Sensed};
 /// What the IMU, corrected, integrates to over each window: the turn (rotation vector) and the change of velocity (less gravity), both in the
 /// body frame at the window's beginning.
 #[inline(always)]
-pub fn integrate(model: &Model, record: &Record, x: &[f64], command: &[[f64; 4]]) -> [Vec<f64>; 6] {
+pub fn integrate(model: &Model, record: &FlightRecord, x: &[f64], command: &[[f64; 4]]) -> [Vec<f64>; 6] {
     let mut out: [Vec<f64>; 6] = Default::default();
     if record.windows.is_empty() {
         return out;
@@ -93,7 +93,7 @@ fn truth(k: &[f64], measured: [[f64; 3]; 2], acceleration: [f64; 3], throttle: f
 
 /// The measured rates as they were when their late samples say they are.
 #[inline(always)]
-fn shifted(record: &Record, offset: f64) -> Vec<[f64; 3]> {
+fn shifted(record: &FlightRecord, offset: f64) -> Vec<[f64; 3]> {
     let n = record.fine.time.len();
     if offset == 0.0 {
         return (0..n).map(|i| std::array::from_fn(|k| record.fine.imu[k][i])).collect();
@@ -114,7 +114,7 @@ fn shifted(record: &Record, offset: f64) -> Vec<[f64; 3]> {
 
 /// Specific forces `force` of the IMU's samples, turned into the world and through a first-order lag of `tau` seconds; straight lines between samples.
 #[inline(always)]
-pub fn lagged(record: &Record, tau: f64, force: impl Fn(usize) -> [f64; 3]) -> Vec<[f64; 3]> {
+pub fn lagged(record: &FlightRecord, tau: f64, force: impl Fn(usize) -> [f64; 3]) -> Vec<[f64; 3]> {
     let fine = &record.fine;
     let mut now: Option<[[f64; 3]; 2]> = None;
     let mut out = Vec::with_capacity(fine.time.len());
@@ -143,7 +143,7 @@ pub fn lagged(record: &Record, tau: f64, force: impl Fn(usize) -> [f64; 3]) -> V
 
 /// What such a lag adds to the corrected specific forces.
 #[inline(always)]
-fn missing(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
+fn missing(record: &FlightRecord, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
     let force = |i: usize| -> [f64; 3] { build!(|k| corrected[i][3 + k]) };
     let late = lagged(record, tau, force);
     let added = |i: usize| {
@@ -156,7 +156,7 @@ fn missing(record: &Record, corrected: &[[f64; 6]], tau: f64) -> Vec<[f64; 3]> {
 
 /// The body's axes in the world at a sample of the whole IMU, between those at the record's.
 #[inline(always)]
-fn fine_axes(record: &Record, i: usize) -> [[f64; 3]; 3] {
+fn fine_axes(record: &FlightRecord, i: usize) -> [[f64; 3]; 3] {
     let at = i / record.fine.every;
     let share = (i % record.fine.every) as f64 / record.fine.every as f64;
     let (a, b) = (&record.axes[at], &record.axes[(at + 1).min(record.axes.len() - 1)]);

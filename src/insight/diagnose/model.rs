@@ -1,9 +1,9 @@
 //! The numbers that a diagnosis may move: those of the compact model, of every effect, and the voltage each flight begins with.
 
-use super::predict::Anew;
+use super::predict::Dirty;
 use crate::model::dynamics::extended::Beyond;
 use crate::model::dynamics::{Factors, Parameters, drag};
-use crate::model::effects::{self, COUNT, Card, Channel, Kind, LOG, LOG_COUNT, MODEL};
+use crate::model::effects::{self, COUNT, Card, EffectKind, LOG, LOG_COUNT, MODEL, ResidualChannel};
 use crate::model::vehicle::{MaxRates, TimeConstants, Vehicle};
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ pub enum Stage {
 
 /// One number.
 #[derive(Clone, Debug)]
-pub struct Number {
+pub struct ModelNumber {
     pub name: String,
     pub unit: &'static str,
     pub low: f64,
@@ -48,7 +48,7 @@ pub struct Number {
 /// All numbers, and the vehicle they are about.
 #[derive(Clone, Debug)]
 pub struct Model {
-    pub numbers: Vec<Number>,
+    pub numbers: Vec<ModelNumber>,
     /// Those of the base vehicle, without effects but its own.
     pub base: Vec<f64>,
     vehicle: Vehicle,
@@ -73,7 +73,7 @@ impl Model {
         let mut add =
             |name: &str, unit, value: f64, [low, high]: [f64; 2], step: f64, trust: f64, stage, moves: [bool; 2]| {
                 let [rates, forces] = moves;
-                numbers.push(Number { name: name.into(), unit, low, high, step, trust, stage, rates, forces });
+                numbers.push(ModelNumber { name: name.into(), unit, low, high, step, trust, stage, rates, forces });
                 base.push(value);
             };
         let tau = vehicle.time_constants();
@@ -119,8 +119,8 @@ impl Model {
         let own = vehicle.effects.drawn(&[0.0; COUNT]);
         for card in cards() {
             let stage = stage(card);
-            let both = card.kind == Kind::Sensor || card.kind == Kind::Random;
-            let rates = card.channels.contains(&Channel::Rate);
+            let both = card.kind == EffectKind::Sensor || card.kind == EffectKind::Random;
+            let rates = card.channels.contains(&ResidualChannel::Rate);
             let moves = [both || rates, both || !rates || card.channels.len() > 1];
             for p in card.parameters {
                 // A time constant that goes to nothing is another effect.
@@ -172,21 +172,21 @@ impl Model {
         &x[LOG_AT..BEGIN]
     }
 
-    /// Parameter `name` of effect `id` at `x`; 0 for one that does not exist.
+    /// EffectParameter `name` of effect `id` at `x`; 0 for one that does not exist.
     pub fn of(&self, x: &[f64], id: &str, name: &str) -> f64 {
         let Some(card) = effects::card(id) else { return 0.0 };
         card.parameters.iter().position(|p| p.name == name).map_or(0.0, |i| x[span(card).start + i])
     }
 
     /// What of a prediction at `x` has to be made again where the numbers `which` are changed.
-    pub fn anew(&self, which: &[usize], x: &[f64]) -> Anew {
+    pub fn dirty(&self, which: &[usize], x: &[f64]) -> Dirty {
         let numbers = || which.iter().map(|&k| &self.numbers[k]);
         // These carry rates into forces, and thrust into rates.
         let present =
             |ids: &[&str]| ids.iter().filter_map(|id| effects::card(id)).any(|card| span(card).any(|k| x[k] != 0.0));
         let mixed = present(&["mixer_thrust_loss", "rate_thrust_coupling", "imu_lever_arm"]);
         let mixed_back = present(&["weak_motor", "yaw_authority_loss"]);
-        Anew {
+        Dirty {
             stage: numbers().map(|n| n.stage).min().unwrap_or(Stage::Sensor),
             rates: numbers().any(|n| n.rates) || mixed_back,
             forces: numbers().any(|n| n.forces) || mixed,
@@ -224,10 +224,10 @@ fn span_of(card: &Card, name: &str) -> usize {
 /// Where the effect enters.
 fn stage(card: &Card) -> Stage {
     match card.kind {
-        Kind::Timing => Stage::Response,
-        Kind::Battery => Stage::Battery,
-        Kind::Thrust | Kind::Drag => Stage::Force,
-        Kind::Random | Kind::Sensor => match card.id {
+        EffectKind::Timing => Stage::Response,
+        EffectKind::Battery => Stage::Battery,
+        EffectKind::Thrust | EffectKind::Drag => Stage::Force,
+        EffectKind::Random | EffectKind::Sensor => match card.id {
             "stream_offset" | "clock_skew" | "command_dropout" => Stage::Response,
             "velocity_lag" => Stage::Force,
             _ => Stage::Sensor,

@@ -2,7 +2,7 @@
 //! because the same place pushes another way when the vehicle has turned.
 
 use super::predict::FORCE;
-use super::problem::{Problem, Values};
+use super::problem::{ChannelValues, Problem};
 use super::structure::fold;
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ const SEEN: f64 = 100.0;
 const LEAST: f64 = 0.05;
 
 /// Share of the horizontal residual that its mean at the same place, at other times, predicts beyond chance; none below a share that matters.
-pub fn share(problem: &Problem, residual: &Values) -> Option<f64> {
+pub fn share(problem: &Problem, residual: &ChannelValues) -> Option<f64> {
     let rows = &problem.rows[FORCE];
     let same = |c: usize| problem.rows[c].len() == rows.len() && residual[c].len() == rows.len();
     if rows.is_empty() || !(FORCE..FORCE + 3).all(same) {

@@ -1,28 +1,29 @@
 //! What flights could show, before any residual is looked at: the smallest size of each effect that they would give away, and tell from its
 //! nearest rival.
 
-use super::finding::{Detectable, Hidden};
+use super::finding::{Detectable, NotDetectable};
 use super::model::{cards, span};
 use super::problem::Problem;
 use super::rank::{ABSORBED, Reach};
-use crate::model::effects::{Card, Channel, Kind};
+use crate::model::effects::{Card, EffectKind, ResidualChannel};
 
 /// Standard deviations that a size has to be, to be seen.
 const SEEN: f64 = 5.0;
 
 /// What the flights could show, and what not, and why.
-pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<Hidden>) {
+pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<NotDetectable>) {
     let (mut can, mut cannot) = (Vec::new(), Vec::new());
     for card in cards() {
         let p = &card.parameters[0];
-        let hidden = |why: String, smallest: Option<f64>| Hidden { effect: card.id, why, smallest, unit: p.unit };
+        let hidden =
+            |why: String, smallest: Option<f64>| NotDetectable { effect: card.id, why, smallest, unit: p.unit };
         if span(card).any(|k| problem.model.base[k] != 0.0) {
             continue;
         }
         let Some(r) = reach.iter().find(|r| r.card.id == card.id) else {
             if let Some(why) = lacking(problem, card) {
                 cannot.push(hidden(why, None));
-            } else if card.kind != Kind::Random && !matches!(card.id, "gyro_bias" | "accel_bias") {
+            } else if card.kind != EffectKind::Random && !matches!(card.id, "gyro_bias" | "accel_bias") {
                 cannot.push(hidden(format!("nothing flown would show it: {}", card.manoeuvre.0), None));
             }
             continue;
@@ -58,23 +59,24 @@ pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<Hidden
 /// What the logs lack to show an effect.
 fn lacking(problem: &Problem, card: &Card) -> Option<String> {
     let any = |from: usize| !problem.rows[from].is_empty();
-    let has = |channel: &Channel| match channel {
-        Channel::Rate => any(0),
-        Channel::Force => any(5),
-        Channel::Turn => any(6),
-        Channel::Push => any(9),
-        Channel::Voltage => any(12),
+    let has = |channel: &ResidualChannel| match channel {
+        ResidualChannel::Rate => any(0),
+        ResidualChannel::Force => any(5),
+        ResidualChannel::Turn => any(6),
+        ResidualChannel::Push => any(9),
+        ResidualChannel::Voltage => any(12),
     };
-    let name = |channel: &Channel| match channel {
-        Channel::Rate => "rate commands with the gyro",
-        Channel::Force => "thrust commands with the accelerometer",
-        Channel::Turn => "attitude",
-        Channel::Push => "attitude and velocity",
-        Channel::Voltage => "voltage",
+    let name = |channel: &ResidualChannel| match channel {
+        ResidualChannel::Rate => "rate commands with the gyro",
+        ResidualChannel::Force => "thrust commands with the accelerometer",
+        ResidualChannel::Turn => "attitude",
+        ResidualChannel::Push => "attitude and velocity",
+        ResidualChannel::Voltage => "voltage",
     };
     if card.channels.iter().any(has) {
         let moves = problem.records.iter().any(|r| r.moves);
-        return (!moves && matches!(card.kind, Kind::Drag | Kind::Thrust)).then(|| "the logs hold no velocity".into());
+        return (!moves && matches!(card.kind, EffectKind::Drag | EffectKind::Thrust))
+            .then(|| "the logs hold no velocity".into());
     }
     Some(format!("the logs hold no {}", card.channels.iter().map(name).collect::<Vec<_>>().join(" and no ")))
 }

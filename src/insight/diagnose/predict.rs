@@ -1,17 +1,17 @@
 //! What the model says the sensors of a flight should have read: the same stages as the simulator's, driven by the log.
 
+use super::actuator_response::{ActuatorResponse, actuator_response, body_rates, supplied};
 use super::kinematics::{self, in_world, lagged, slopes, vector};
 use super::model::{BEGIN, Model, Stage};
-use super::record::Record;
-use super::respond::{Responses, respond, spin, supplied};
+use super::record::FlightRecord;
 use crate::base::lane::{Kernel, Lane32, Level, build, dispatch};
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::period;
 use crate::model::attitude::{compose, dot};
 use crate::model::dynamics::Parameters;
 use crate::model::dynamics::battery::discharged;
-use crate::model::dynamics::extended::{self, Moment};
-use crate::model::effects::{self, Channel, Sensed};
+use crate::model::dynamics::extended::{self, ForceInputs};
+use crate::model::effects::{self, ResidualChannel, Sensed};
 use std::sync::Arc;
 
 /// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
@@ -26,8 +26,14 @@ pub const PUSH: usize = 9;
 pub const VOLTAGE: usize = 12;
 
 /// What a channel compares.
-pub fn kind(channel: usize) -> Channel {
-    [Channel::Rate, Channel::Force, Channel::Turn, Channel::Push, Channel::Voltage][channel / 3]
+pub fn kind(channel: usize) -> ResidualChannel {
+    [
+        ResidualChannel::Rate,
+        ResidualChannel::Force,
+        ResidualChannel::Turn,
+        ResidualChannel::Push,
+        ResidualChannel::Voltage,
+    ][channel / 3]
 }
 
 /// One flight, predicted; every stage is kept and shared, so that a number late in the chain is cheap to change.
@@ -37,7 +43,7 @@ pub struct Predicted {
     command: Arc<Vec<[f64; 4]>>,
     lag: Arc<Vec<f64>>,
     /// What the filtered commands go to, and how fast those of the rates change.
-    asked: Arc<Vec<([f64; 4], [f64; 3])>>,
+    setpoint: Arc<Vec<([f64; 4], [f64; 3])>>,
     /// Body rates, and those that the gyro's late samples show.
     pub rates: Arc<Vec<[f64; 3]>>,
     seen_rates: Arc<Vec<[f64; 3]>>,
@@ -46,13 +52,13 @@ pub struct Predicted {
     pub voltage: Arc<Vec<f64>>,
     /// Specific force, m/s2.
     pub force: Arc<Vec<[f64; 3]>>,
-    /// By channel, in the units of [`Record`]; empty where the log lacks it.
+    /// By channel, in the units of [`FlightRecord`]; empty where the log lacks it.
     pub channels: [Arc<Vec<f64>>; CHANNELS],
 }
 
 /// What of a prediction has to be made again.
 #[derive(Clone, Copy, Debug)]
-pub struct Anew {
+pub struct Dirty {
     /// From where on.
     pub stage: Stage,
     /// Whether only body rates change, or only what is about thrust and drag.
@@ -62,8 +68,8 @@ pub struct Anew {
     pub corrections: bool,
 }
 
-impl Anew {
-    pub const ALL: Anew = Anew { stage: Stage::Response, rates: true, forces: true, corrections: true };
+impl Dirty {
+    pub const ALL: Dirty = Dirty { stage: Stage::Response, rates: true, forces: true, corrections: true };
 }
 
 impl Predicted {
@@ -78,34 +84,34 @@ impl Predicted {
     }
 
     /// Predicts `record`, number `flight`, at `x`.
-    pub fn new(model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
-        Self::default().anew(Anew::ALL, model, record, flight, x)
+    pub fn new(model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
+        Self::default().recomputed(Dirty::ALL, model, record, flight, x)
     }
 
     /// The same at other numbers, which change no more than `what`.
-    pub fn changed(&self, what: Anew, model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
-        self.clone().anew(what, model, record, flight, x)
+    pub fn changed(&self, what: Dirty, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
+        self.clone().recomputed(what, model, record, flight, x)
     }
 
-    fn anew(self, what: Anew, model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
-        dispatch(Level::best(), Remake { from: self, what, model, record, flight, x })
+    fn recomputed(self, what: Dirty, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
+        dispatch(Level::best(), Recompute { from: self, what, model, record, flight, x })
     }
 
     #[inline(always)]
-    fn remade(mut self, what: Anew, model: &Model, record: &Record, flight: usize, x: &[f64]) -> Self {
+    fn recompute(mut self, what: Dirty, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
         let p = model.parameters(x);
         let stage = what.stage;
         if stage <= Stage::Response {
-            let Responses { command, lag, asked } = respond(&p, record, model, x, 0.0);
-            (self.command, self.lag, self.asked) = (command.into(), lag.into(), asked.into());
+            let ActuatorResponse { command, lag, setpoint } = actuator_response(&p, record, model, x, 0.0);
+            (self.command, self.lag, self.setpoint) = (command.into(), lag.into(), setpoint.into());
         }
         if stage <= Stage::Spin && what.rates {
             let offset = model.of(x, "stream_offset", "offset");
-            self.rates = spin(&p, record, &self.command).into();
+            self.rates = body_rates(&p, record, &self.command).into();
             self.seen_rates = if offset == 0.0 {
                 self.rates.clone()
             } else {
-                spin(&p, record, &respond(&p, record, model, x, offset).command).into()
+                body_rates(&p, record, &actuator_response(&p, record, model, x, offset).command).into()
             };
         }
         if stage <= Stage::Battery && what.forces {
@@ -127,7 +133,7 @@ impl Predicted {
 
     /// Modelled voltage, and that with its slow error taken off, which thrust sees.
     #[inline(always)]
-    fn discharge(&mut self, p: &Parameters<f64>, record: &Record, begin_v: f64) {
+    fn discharge(&mut self, p: &Parameters<f64>, record: &FlightRecord, begin_v: f64) {
         let n = record.time.len();
         if record.volts.is_empty() {
             (self.modelled_v, self.voltage) = (vec![0.0; n].into(), vec![0.0; n].into());
@@ -154,7 +160,7 @@ impl Predicted {
 
     /// Specific force. A velocity that lags by `tau` is taken as what it will be.
     #[inline(always)]
-    fn push(&mut self, p: &Parameters<f64>, record: &Record, tau: f64, gravity: f64) {
+    fn push(&mut self, p: &Parameters<f64>, record: &FlightRecord, tau: f64, gravity: f64) {
         let since = record.since();
         let mut out = Vec::with_capacity(record.time.len());
         let force = |i: usize| -> [f64; 3] { build!(|k| record.fine.imu[3 + k][i]) };
@@ -168,7 +174,7 @@ impl Predicted {
                     velocity[k] += tau * dot(record.axes[i][k], gains);
                 }
             }
-            let moment = Moment {
+            let inputs = ForceInputs {
                 command: self.command[i][3],
                 voltage: self.voltage[i],
                 axes: record.axes[i],
@@ -178,14 +184,14 @@ impl Predicted {
                 rate_error: self.lag[i],
                 elapsed: record.time[i] - since,
             };
-            out.push(extended::force(p, &moment));
+            out.push(extended::force(p, &inputs));
         }
         self.force = out.into();
     }
 
     /// Readings, averaged over bins.
     #[inline(always)]
-    fn sense(&mut self, p: &Parameters<f64>, what: Anew, model: &Model, record: &Record, x: &[f64]) {
+    fn sense(&mut self, p: &Parameters<f64>, what: Dirty, model: &Model, record: &FlightRecord, x: &[f64]) {
         let k = model.sensors(x);
         let arm = ["rx", "ry", "rz"].iter().any(|side| model.of(x, "imu_lever_arm", side) != 0.0);
         let acceleration = if arm { self.turning(p, record) } else { vec![[0.0; 3]; record.time.len()] };
@@ -217,17 +223,17 @@ impl Predicted {
 
     /// Angular acceleration, rad/s2: what the response does at each moment, for it is over in a few samples.
     #[inline(always)]
-    fn turning(&self, p: &Parameters<f64>, record: &Record) -> Vec<[f64; 3]> {
+    fn turning(&self, p: &Parameters<f64>, record: &FlightRecord) -> Vec<[f64; 3]> {
         const MOMENT_S: f64 = 1e-5;
         if !record.commanded[0] {
             return slopes(&record.time, &self.rates);
         }
         let mut out = Vec::with_capacity(record.time.len());
         for i in 0..record.time.len() {
-            let (sent, slope) = self.asked[i];
+            let (sent, slope) = self.setpoint[i];
             let voltage = supplied(p, record, i);
-            let (next, _) = extended::respond(p, self.command[i], slope, sent, voltage, MOMENT_S);
-            let (now, next) = (extended::spin(p, self.command[i]), extended::spin(p, next));
+            let (next, _) = extended::actuator_response(p, self.command[i], slope, sent, voltage, MOMENT_S);
+            let (now, next) = (extended::body_rates(p, self.command[i]), extended::body_rates(p, next));
             out.push(build!(|k| (next[k] - now[k]) / MOMENT_S));
         }
         out
@@ -235,26 +241,26 @@ impl Predicted {
 }
 
 /// A fused multiply-add is an instruction below a kernel, and a call of a function elsewhere.
-struct Remake<'a> {
+struct Recompute<'a> {
     from: Predicted,
-    what: Anew,
+    what: Dirty,
     model: &'a Model,
-    record: &'a Record,
+    record: &'a FlightRecord,
     flight: usize,
     x: &'a [f64],
 }
 
-impl Kernel for Remake<'_> {
+impl Kernel for Recompute<'_> {
     type Output = Predicted;
 
     #[inline(always)]
     fn run<L: Lane32>(self) -> Predicted {
-        self.from.remade(self.what, self.model, self.record, self.flight, self.x)
+        self.from.recompute(self.what, self.model, self.record, self.flight, self.x)
     }
 }
 
 /// What was measured, in the layout of [`Predicted::channels`].
-pub fn measured(record: &Record, gravity: f64) -> [Vec<f64>; CHANNELS] {
+pub fn measured(record: &FlightRecord, gravity: f64) -> [Vec<f64>; CHANNELS] {
     let mut out: [Vec<f64>; CHANNELS] = Default::default();
     for (c, channel) in out.iter_mut().enumerate().take(6) {
         let mean = |&[from, to]: &[usize; 2]| (from..to).map(|i| record.imu[c][i]).sum::<f64>() / (to - from) as f64;

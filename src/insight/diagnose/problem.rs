@@ -2,13 +2,13 @@
 
 use super::model::Model;
 use super::predict::{CHANNELS, Predicted, measured};
-use super::record::Record;
+use super::record::FlightRecord;
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// One row of a channel.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub struct ResidualRow {
     pub flight: u32,
     /// Index into the channel of its flight.
     pub index: u32,
@@ -20,23 +20,23 @@ pub struct Row {
     pub follows: bool,
 }
 
-/// Values by channel; empty where there is nothing.
-pub type Values = [Vec<f64>; CHANNELS];
+/// ChannelValues by channel; empty where there is nothing.
+pub type ChannelValues = [Vec<f64>; CHANNELS];
 
 /// Flights and the model they are held against.
 pub struct Problem {
     pub model: Model,
-    pub records: Vec<Record>,
-    pub rows: [Vec<Row>; CHANNELS],
-    pub measured: Values,
+    pub records: Vec<FlightRecord>,
+    pub rows: [Vec<ResidualRow>; CHANNELS],
+    pub measured: ChannelValues,
     pub blocks: usize,
 }
 
 /// A prediction of every flight.
-pub type State = Vec<Predicted>;
+pub type Predictions = Vec<Predicted>;
 
 impl Problem {
-    pub fn new(model: Model, records: Vec<Record>) -> Self {
+    pub fn new(model: Model, records: Vec<FlightRecord>) -> Self {
         let mut out = Self { model, records, rows: Default::default(), measured: Default::default(), blocks: 0 };
         let start = out.predict(&out.model.base);
         let gravity = out.model.vehicle().gravity_m_s2;
@@ -53,7 +53,13 @@ impl Problem {
                     let follows = before != usize::MAX && before + 1 == i && record.adjoins(c, i);
                     before = i;
                     let block = record.block[(from + to) / 2];
-                    out.rows[c].push(Row { flight: f as u32, index: i as u32, block, sample: from as u32, follows });
+                    out.rows[c].push(ResidualRow {
+                        flight: f as u32,
+                        index: i as u32,
+                        block,
+                        sample: from as u32,
+                        follows,
+                    });
                     out.measured[c].push(seen[c][i]);
                 }
             }
@@ -63,45 +69,45 @@ impl Problem {
 
     /// Where each flight begins on a clock that runs through all of them, s.
     pub fn clocks(&self) -> Vec<f64> {
-        let length = |r: &Record| r.time.last().map_or(0.0, |end| end - r.time[0]);
-        let after = |clock: &mut f64, r: &Record| Some(std::mem::replace(clock, *clock + length(r)));
+        let length = |r: &FlightRecord| r.time.last().map_or(0.0, |end| end - r.time[0]);
+        let after = |clock: &mut f64, r: &FlightRecord| Some(std::mem::replace(clock, *clock + length(r)));
         self.records.iter().scan(0.0, after).collect()
     }
 
     /// Predicts every flight at `x`.
-    pub fn predict(&self, x: &[f64]) -> State {
+    pub fn predict(&self, x: &[f64]) -> Predictions {
         self.records.iter().enumerate().map(|(f, record)| Predicted::new(&self.model, record, f, x)).collect()
     }
 
     /// Predicts at `x`, which differs from that of `state` in the numbers `which`.
-    pub fn change(&self, state: &State, which: &[usize], x: &[f64]) -> State {
-        let what = self.model.anew(which, x);
-        let one = |(f, record): (usize, &Record)| state[f].changed(what, &self.model, record, f, x);
+    pub fn change(&self, state: &Predictions, which: &[usize], x: &[f64]) -> Predictions {
+        let what = self.model.dirty(which, x);
+        let one = |(f, record): (usize, &FlightRecord)| state[f].changed(what, &self.model, record, f, x);
         self.records.iter().enumerate().map(one).collect()
     }
 
     /// A prediction's rows.
-    pub fn pick(&self, state: &State) -> Values {
+    pub fn pick(&self, state: &Predictions) -> ChannelValues {
         std::array::from_fn(|c| {
             self.rows[c].iter().map(|row| state[row.flight as usize].channels[c][row.index as usize]).collect()
         })
     }
 
     /// Measured less predicted.
-    pub fn residuals(&self, state: &State) -> Values {
+    pub fn residuals(&self, state: &Predictions) -> ChannelValues {
         let predicted = self.pick(state);
         std::array::from_fn(|c| self.measured[c].iter().zip(&predicted[c]).map(|(m, p)| m - p).collect())
     }
 
     /// Change of the prediction per unit of number `k` at `x`, whose prediction is `state`.
-    pub fn slope(&self, state: &State, x: &[f64], k: usize) -> Values {
+    pub fn slope(&self, state: &Predictions, x: &[f64], k: usize) -> ChannelValues {
         let number = &self.model.numbers[k];
         let step = if x[k] + number.step <= number.high { number.step } else { -number.step };
         self.secant(state, x, &[(k, x[k] + step)], 1.0 / step)
     }
 
     /// `scale` times the change of the prediction when numbers take other values. A channel that does not change is empty.
-    pub fn secant(&self, state: &State, x: &[f64], to: &[(usize, f64)], scale: f64) -> Values {
+    pub fn secant(&self, state: &Predictions, x: &[f64], to: &[(usize, f64)], scale: f64) -> ChannelValues {
         let mut moved = x.to_vec();
         to.iter().for_each(|&(k, value)| moved[k] = value);
         let which: Vec<usize> = to.iter().map(|&(k, _)| k).collect();
@@ -111,7 +117,7 @@ impl Problem {
             if (0..state.len()).all(same) {
                 return Vec::new();
             }
-            let one = |row: &Row| {
+            let one = |row: &ResidualRow| {
                 let (f, i) = (row.flight as usize, row.index as usize);
                 (changed[f].channels[c][i] - state[f].channels[c][i]) * scale
             };
@@ -121,12 +127,12 @@ impl Problem {
     }
 
     /// [`Problem::slope`] of several numbers, side by side.
-    pub fn slopes(&self, state: &State, x: &[f64], which: &[usize]) -> Vec<Values> {
+    pub fn slopes(&self, state: &Predictions, x: &[f64], which: &[usize]) -> Vec<ChannelValues> {
         which.par_iter().map(|&k| self.slope(state, x, k)).collect()
     }
 }
 
-impl Record {
+impl FlightRecord {
     /// First sample of value `i` of channel `c`, and one beyond its last.
     pub fn place(&self, c: usize, i: usize) -> [usize; 2] {
         match c {

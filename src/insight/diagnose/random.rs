@@ -38,7 +38,7 @@ const EARLY: f64 = 0.4;
 pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
     let x = &selection.point.x;
     let p = problem.model.parameters(x);
-    let late = crate::model::dynamics::extended::lateness(&p);
+    let late = crate::model::dynamics::extended::command_delays(&p);
     let (mut whole, mut half, mut kept, mut early) = (0usize, 0usize, 0usize, 0usize);
     for axis in 0..3 {
         let (rows, residual) = (&problem.rows[RATE + axis], &selection.point.residual[RATE + axis]);
@@ -148,7 +148,7 @@ pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Op
     let (least, most) = quarters.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), q| (l.min(*q), m.max(*q)));
     let lasting = least > 0.1 * most;
     let balanced = lags[0][0].min(lags[1][0]) > 0.15 * lags[0][0].max(lags[1][0]);
-    let swings = !super::ringing::find(problem, &selection.point.residual).is_empty();
+    let swings = !super::oscillation::find(problem, &selection.point.residual).is_empty();
     if stretches < REPLICATED
         || swings
         || sigma < LEAST_GUST

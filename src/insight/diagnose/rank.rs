@@ -1,9 +1,9 @@
 //! Directions in the order of what they would explain, and what a log could show at all.
 
-use super::columns::Column;
-use super::fit::Point;
+use super::candidates::Candidate;
+use super::fit::FitPoint;
 use super::gram::{Grams, score};
-use super::problem::{Problem, Values};
+use super::problem::{ChannelValues, Problem};
 use super::whiten::Whitener;
 use crate::model::effects::Card;
 use rayon::prelude::*;
@@ -26,13 +26,14 @@ pub struct Reach {
 pub fn rank(
     problem: &Problem,
     whitener: &Whitener,
-    point: &Point,
-    found: &[Column],
+    point: &FitPoint,
+    found: &[Candidate],
     reach_too: bool,
 ) -> (Vec<(usize, f64, f64)>, Vec<Reach>) {
     let residual = whitener.apply(&point.residual, &problem.rows);
     let n = point.white.len();
-    let all: Vec<&Values> = point.white.iter().chain(found.iter().map(|c| &c.white)).chain([&residual]).collect();
+    let all: Vec<&ChannelValues> =
+        point.white.iter().chain(found.iter().map(|c| &c.white)).chain([&residual]).collect();
     let grams = Grams::new(&all, &problem.rows, problem.blocks);
     let rest: Vec<usize> = (0..n).collect();
     let mut prior: Vec<f64> = point.free.iter().map(|&k| problem.model.numbers[k].trust.powi(-2)).collect();

@@ -30,7 +30,7 @@ pub struct Fine {
 
 /// One flight.
 #[derive(Debug)]
-pub struct Record {
+pub struct FlightRecord {
     pub name: String,
     /// By how much the odometry's clock was moved to the gyro's, s.
     pub moved: f64,
@@ -68,7 +68,7 @@ pub struct Record {
     pub bins: Vec<[usize; 2]>,
 }
 
-impl Record {
+impl FlightRecord {
     /// `flight` of a vehicle like `base`; `full_rate_rad_s` is what a full stick asks for.
     pub fn new(flight: &Flight, full_rate_rad_s: [f64; 3]) -> Self {
         let quality = &flight.quality;

@@ -1,11 +1,11 @@
 //! Which effects explain the residuals: rank by score, refit the best and their rivals, keep the best, and again.
 
-use super::columns::{Column, base_numbers, candidates, columns, renewed};
-use super::fit::{self, Point};
+use super::candidates::{Candidate, base_numbers, candidates, causes, renewed};
+use super::fit::{self, FitPoint};
 use super::gram::Grams;
 use super::judge::is_material;
 use super::model::span;
-use super::problem::{Problem, Values};
+use super::problem::{ChannelValues, Problem};
 use super::rank::{Reach, rank};
 use super::trial::{rivals, tied, try_best};
 use super::whiten::Whitener;
@@ -25,15 +25,15 @@ const COMPETES: f64 = 0.3;
 
 /// What selection ended with.
 pub struct Selection {
-    pub point: Point,
+    pub point: FitPoint,
     pub whitener: Whitener,
     /// Effects added, in the order of their gain when added, with those that nearly took their place.
     pub added: Vec<Added>,
     /// The fit of the compact model alone, under the same whitening.
-    pub base: Point,
+    pub base: FitPoint,
     pub reach: Vec<Reach>,
     /// Causes that were not added.
-    pub others: Vec<Column>,
+    pub others: Vec<Candidate>,
 }
 
 impl Selection {
@@ -79,12 +79,12 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
     let mut added: Vec<Added> = Vec::new();
     let mut reach = Vec::new();
     let mut pending: Vec<(&'static Card, f64)> = Vec::new();
-    let mut found: Vec<Column> = Vec::new();
+    let mut found: Vec<Candidate> = Vec::new();
     for round in 0..=MOST {
         watch("weighing causes", 0.2 + 0.6 * round as f64 / MOST as f64);
         let held: Vec<&'static Card> = added.iter().map(|a| a.card).collect();
         found = if round == 0 {
-            columns(problem, &whitener, &point, &candidates(problem))
+            candidates(problem, &whitener, &point, &causes(problem))
         } else {
             renewed(problem, &whitener, &point, &held, &pending, found)
         };
@@ -142,13 +142,14 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
 }
 
 /// The whitener of what is left when all columns are taken off.
-fn saturated(problem: &Problem, whitener: &Whitener, point: &Point, found: &[Column]) -> Whitener {
+fn saturated(problem: &Problem, whitener: &Whitener, point: &FitPoint, found: &[Candidate]) -> Whitener {
     let residual = whitener.apply(&point.residual, &problem.rows);
-    let all: Vec<&Values> = point.white.iter().chain(found.iter().map(|c| &c.white)).chain([&residual]).collect();
+    let all: Vec<&ChannelValues> =
+        point.white.iter().chain(found.iter().map(|c| &c.white)).chain([&residual]).collect();
     let grams = Grams::new(&all, &problem.rows, problem.blocks);
     let Some((beta, _)) = together(&grams) else { return whitener.clone() };
     let mut left = point.residual.clone();
-    let raw: Vec<Values> = point.free.par_iter().map(|&k| problem.slope(&point.state, &point.x, k)).collect();
+    let raw: Vec<ChannelValues> = point.free.par_iter().map(|&k| problem.slope(&point.state, &point.x, k)).collect();
     for (j, column) in raw.iter().chain(found.iter().map(|c| &c.change)).enumerate() {
         for (left, column) in left.iter_mut().zip(column) {
             left.iter_mut().zip(column).for_each(|(l, x)| *l -= beta[(j, 0)] * x);
@@ -158,11 +159,12 @@ fn saturated(problem: &Problem, whitener: &Whitener, point: &Point, found: &[Col
 }
 
 /// By how much the whitened squares of `point` would still fall if every number and every cause were fitted, less what that takes of the noise alone.
-pub fn left_to_gain(problem: &Problem, whitener: &Whitener, point: &Point, selection: &Selection) -> f64 {
+pub fn left_to_gain(problem: &Problem, whitener: &Whitener, point: &FitPoint, selection: &Selection) -> f64 {
     let own = fit::whitened_slopes(problem, whitener, &point.state, &point.x, &selection.point.free);
-    let causes: Vec<Values> = selection.others.par_iter().map(|c| whitener.apply(&c.change, &problem.rows)).collect();
+    let causes: Vec<ChannelValues> =
+        selection.others.par_iter().map(|c| whitener.apply(&c.change, &problem.rows)).collect();
     let residual = whitener.apply(&point.residual, &problem.rows);
-    let all: Vec<&Values> = own.iter().chain(&causes).chain([&residual]).collect();
+    let all: Vec<&ChannelValues> = own.iter().chain(&causes).chain([&residual]).collect();
     let grams = Grams::new(&all, &problem.rows, problem.blocks);
     let Some((beta, n)) = together(&grams) else { return 0.0 };
     let along = Grams::pick(&grams.sum, &(0..n).collect::<Vec<_>>(), &[n]);

@@ -2,7 +2,7 @@
 //! it, because after a minute the two have nothing in common any more.
 
 use super::predict::RATE;
-use super::problem::{Problem, State, Values};
+use super::problem::{ChannelValues, Predictions, Problem};
 use super::record::BIN_S;
 use crate::base::stats::median;
 
@@ -13,7 +13,7 @@ const MOST: f64 = 0.025;
 const LIKE: f64 = 0.5;
 
 /// Skew of the sensors' clock, as a share, if the rates can tell; from the prediction `state` and what was measured less it.
-pub fn estimate(problem: &Problem, state: &State, residual: &Values) -> Option<f64> {
+pub fn estimate(problem: &Problem, state: &Predictions, residual: &ChannelValues) -> Option<f64> {
     let mut slopes = Vec::new();
     for f in 0..state.len() {
         let rows = &problem.rows[RATE];

@@ -2,7 +2,7 @@
 //! lines up with; and how much of it its own past predicts.
 
 use super::predict::{CHANNELS, FORCE, RATE, VOLTAGE};
-use super::problem::{Problem, State, Values};
+use super::problem::{ChannelValues, Predictions, Problem};
 use crate::base::stats::quantile;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -65,7 +65,7 @@ pub fn fold(block: u32) -> u32 {
 }
 
 /// The residuals of channels of rates, forces and voltage, searched for structure.
-pub fn search(problem: &Problem, state: &State, residual: &Values) -> Vec<Structure> {
+pub fn search(problem: &Problem, state: &Predictions, residual: &ChannelValues) -> Vec<Structure> {
     let channels: Vec<usize> = (RATE..FORCE + 3).chain([VOLTAGE]).filter(|&c| residual[c].len() > 200).collect();
     let mut found: Vec<Structure> = channels.into_par_iter().map(|c| one(problem, state, c, &residual[c])).collect();
     let mut belongs = |c: usize, share: f64, along: &'static str| {
@@ -74,7 +74,7 @@ pub fn search(problem: &Problem, state: &State, residual: &Values) -> Vec<Struct
     if let Some(share) = super::place::share(problem, residual) {
         [FORCE, FORCE + 1].into_iter().for_each(|c| belongs(c, share, PLACE));
     }
-    for swing in super::ringing::find(problem, residual) {
+    for swing in super::oscillation::find(problem, residual) {
         belongs(FORCE + swing.axis, swing.share, swing.name);
     }
     found
@@ -93,7 +93,7 @@ impl Structure {
     }
 }
 
-fn one(problem: &Problem, state: &State, c: usize, residual: &[f64]) -> Structure {
+fn one(problem: &Problem, state: &Predictions, c: usize, residual: &[f64]) -> Structure {
     let features = features(problem, state, c);
     let fold: Vec<u32> = problem.rows[c].iter().map(|row| fold(row.block)).collect();
     let cap = 5.0 * crate::base::stats::robust_sd(residual).max(1e-12);
@@ -210,13 +210,13 @@ fn coloured(problem: &Problem, c: usize, y: &[f64]) -> f64 {
 }
 
 /// Signals at the rows of channel `c`, cut into levels.
-fn features(problem: &Problem, state: &State, c: usize) -> Vec<Feature> {
+fn features(problem: &Problem, state: &Predictions, c: usize) -> Vec<Feature> {
     let all = signals(problem, state, c);
     all.into_iter().filter_map(|(name, _, values)| Feature::new(name, &values)).collect()
 }
 
 /// Signals at the rows of channel `c`, with their names and units.
-pub fn signals(problem: &Problem, state: &State, c: usize) -> Vec<(&'static str, &'static str, Vec<f64>)> {
+pub fn signals(problem: &Problem, state: &Predictions, c: usize) -> Vec<(&'static str, &'static str, Vec<f64>)> {
     let rows = &problem.rows[c];
     let at = |f: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
         rows.iter().map(|row| f(row.flight as usize, row.sample as usize)).collect()

@@ -1,7 +1,7 @@
 //! Effects tried beside what stands: fitted with the base, each from all sizes that could be it.
 
-use super::columns::{Column, Direction};
-use super::fit::{self, Point};
+use super::candidates::{Candidate, Direction};
+use super::fit::{self, FitPoint};
 use super::judge::is_bounded;
 use super::model::{TAU, span};
 use super::problem::Problem;
@@ -20,7 +20,7 @@ const TIE: f64 = 2.5;
 /// An effect that was tried beside what stands.
 pub struct Trial {
     pub card: &'static Card,
-    pub point: Point,
+    pub point: FitPoint,
     /// Fall of the whitened squares.
     pub gain: f64,
 }
@@ -63,8 +63,8 @@ fn delayed(card: &Card) -> std::ops::Range<usize> {
 pub fn try_best(
     problem: &Problem,
     whitener: &Whitener,
-    point: &Point,
-    found: &[Column],
+    point: &FitPoint,
+    found: &[Candidate],
     order: &[(usize, f64, f64)],
 ) -> Vec<Trial> {
     let mut chosen: Vec<usize> = Vec::new();

@@ -2,7 +2,7 @@
 //! do not rule.
 
 use super::predict::CHANNELS;
-use super::problem::{Row, Values};
+use super::problem::{ChannelValues, ResidualRow};
 use crate::base::stats::robust_sd;
 use nalgebra::{DMatrix, DVector};
 
@@ -21,7 +21,7 @@ pub struct Whitener {
     /// Coefficients of the past, newest first, and one over the standard deviation.
     filter: [(Vec<f64>, f64); CHANNELS],
     /// Square root of each row's weight; 0 leaves a row out.
-    weight: Values,
+    weight: ChannelValues,
 }
 
 fn order(c: usize) -> usize {
@@ -35,14 +35,14 @@ fn order(c: usize) -> usize {
 impl Whitener {
     /// Scales channels only: before anything is known of their noise. An autoregression of residuals that still hold a slow effect would
     /// take the effect for noise.
-    pub fn plain(residual: &Values, rows: &[Vec<Row>; CHANNELS]) -> Self {
+    pub fn plain(residual: &ChannelValues, rows: &[Vec<ResidualRow>; CHANNELS]) -> Self {
         let filter = std::array::from_fn(|c| (Vec::new(), 1.0 / robust_sd(&residual[c]).max(1e-12)));
         let weigh = |c: usize| if rows[c].len() < LEAST_ROWS { 0.0 } else { 1.0 };
         Whitener { filter, weight: std::array::from_fn(|c| vec![weigh(c); rows[c].len()]) }
     }
 
     /// From residuals in which no structure is left. `other` is a unit for channels without any.
-    pub fn of(noise: &Values, rows: &[Vec<Row>; CHANNELS]) -> Self {
+    pub fn of(noise: &ChannelValues, rows: &[Vec<ResidualRow>; CHANNELS]) -> Self {
         let filter = std::array::from_fn(|c| autoregression(&noise[c], &rows[c], order(c)));
         let mut out = Whitener { filter, weight: std::array::from_fn(|c| vec![1.0; rows[c].len()]) };
         let white = out.apply(noise, rows);
@@ -68,7 +68,7 @@ impl Whitener {
     }
 
     /// Whitens values in the layout of the rows; a channel without values stays empty.
-    pub fn apply(&self, x: &Values, rows: &[Vec<Row>; CHANNELS]) -> Values {
+    pub fn apply(&self, x: &ChannelValues, rows: &[Vec<ResidualRow>; CHANNELS]) -> ChannelValues {
         std::array::from_fn(|c| {
             let (past, scale) = &self.filter[c];
             let mut run = 0;
@@ -83,7 +83,7 @@ impl Whitener {
     }
 
     /// Square roots of the rows' weights.
-    pub fn weights_mut(&mut self) -> &mut Values {
+    pub fn weights_mut(&mut self) -> &mut ChannelValues {
         &mut self.weight
     }
 
@@ -94,7 +94,7 @@ impl Whitener {
 }
 
 /// Least squares of each row on those before it; one over the standard deviation of what is left.
-fn autoregression(x: &[f64], rows: &[Row], order: usize) -> (Vec<f64>, f64) {
+fn autoregression(x: &[f64], rows: &[ResidualRow], order: usize) -> (Vec<f64>, f64) {
     let mut normal = DMatrix::<f64>::zeros(order, order);
     let mut right = DVector::<f64>::zeros(order);
     // Outliers would make any noise look like a random walk.

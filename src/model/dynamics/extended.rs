@@ -4,7 +4,10 @@
 use super::{Parameters, State, battery, drag, response};
 use crate::base::lane::{Lane, Real, build, each};
 use crate::model::attitude::{body_axes, compose, dot, normalized, small_rotation};
-use crate::model::effects::{self, Air, Asked, Cell, Flow, Lag, Late, Spin, Supply, Values};
+use crate::model::effects::{
+    self, Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, EffectValues, RelativeWind, Setpoint,
+    ThrustInput,
+};
 use crate::model::thrust;
 use crate::model::vehicle::Vehicle;
 
@@ -25,7 +28,7 @@ pub struct Beyond<R> {
     /// Open-circuit voltage of a full and of an empty battery, V.
     pub full_v: R,
     pub empty_v: R,
-    pub values: Values<R>,
+    pub values: EffectValues<R>,
     /// Parts that a step is divided into.
     parts: u32,
 }
@@ -50,7 +53,7 @@ impl Beyond<f64> {
             tau,
             full_v: vehicle.battery.full_v,
             empty_v: vehicle.battery.empty_v,
-            values: Values::new(numbers),
+            values: EffectValues::new(numbers),
             parts,
         }
     }
@@ -125,19 +128,19 @@ pub fn throttle<R: Real>(command: R) -> R {
     command.mul_add(R::of(0.5), R::of(0.5))
 }
 
-/// How late the commands of roll, pitch, yaw and thrust arrive, s.
+/// By how much the commands of roll, pitch, yaw and thrust arrive late, s.
 #[inline(always)]
-pub fn lateness<R: Real>(p: &Parameters<R>) -> [R; 4] {
-    let mut late = Late { rates: R::zero(), yaw: R::zero(), thrust: R::zero() };
-    effects::late(&p.beyond.values, &mut late);
+pub fn command_delays<R: Real>(p: &Parameters<R>) -> [R; 4] {
+    let mut delay = CommandDelay { rates: R::zero(), yaw: R::zero(), thrust: R::zero() };
+    effects::command_delay(&p.beyond.values, &mut delay);
     // No command comes before it was sent, or later than the line is long.
-    let yaw = (late.rates + late.yaw).clamp(R::zero(), R::of(LATEST_S));
-    [late.rates, late.rates, yaw, late.thrust]
+    let yaw = (delay.rates + delay.yaw).clamp(R::zero(), R::of(LATEST_S));
+    [delay.rates, delay.rates, yaw, delay.thrust]
 }
 
 /// The filtered commands and their slope `h` seconds later, while the commands that arrive are `sent`, at terminal `voltage`.
 #[inline(always)]
-pub fn respond<R: Real>(
+pub fn actuator_response<R: Real>(
     p: &Parameters<R>,
     command: [R; 4],
     slope: [R; 3],
@@ -148,30 +151,33 @@ pub fn respond<R: Real>(
     let values = &p.beyond.values;
     let zero = R::zero();
     let tau = p.beyond.tau;
-    let mut lag = Lag { tau, tau_down: tau[3], inertia: zero, slew: [zero; 3], missing_v: p.beyond.full_v - voltage };
-    effects::lag(values, &mut lag);
+    let mut actuator =
+        Actuator { tau, tau_down: tau[3], inertia: zero, slew: [zero; 3], missing_v: p.beyond.full_v - voltage };
+    effects::actuator(values, &mut actuator);
     let rates = build!(|i| command[i] * p.max_rate[i]);
     let throttle = throttle(command[3]);
-    let mut asked = Asked { command: sent, throttle, rates, tau: lag.tau, max_rate: p.max_rate };
-    effects::ask(values, &mut asked);
-    let falling = asked.command[3].lt(command[3]);
-    let tau = [lag.tau[0], lag.tau[1], lag.tau[2], R::select(falling, lag.tau_down, lag.tau[3])];
-    let mut next: [R; 4] = build!(|i| response::toward(command[i], asked.command[i], R::one() - (-(h / tau[i])).exp()));
+    let mut setpoint = Setpoint { command: sent, throttle, rates, tau: actuator.tau, max_rate: p.max_rate };
+    effects::setpoint(values, &mut setpoint);
+    let falling = setpoint.command[3].lt(command[3]);
+    let tau =
+        [actuator.tau[0], actuator.tau[1], actuator.tau[2], R::select(falling, actuator.tau_down, actuator.tau[3])];
+    let mut next: [R; 4] =
+        build!(|i| response::toward(command[i], setpoint.command[i], R::one() - (-(h / tau[i])).exp()));
     let mut next_slope = slope;
     let (oscillates, limited) = values.shapes();
     if limited {
         for i in 0..3 {
-            next[i] = response::limited(command[i], asked.command[i], tau[i], lag.slew[i] * p.max_rate[i], h);
+            next[i] = response::limited(command[i], setpoint.command[i], tau[i], actuator.slew[i] * p.max_rate[i], h);
         }
     }
     if oscillates {
         // A lane without inertia keeps what the others of its block override.
-        let rings = zero.lt(lag.inertia);
+        let oscillates_here = zero.lt(actuator.inertia);
         for i in 0..3 {
             let (value, change) =
-                response::second_order(command[i], slope[i], asked.command[i], tau[i], lag.inertia, h);
-            next[i] = R::select(rings, value, next[i]);
-            next_slope[i] = R::select(rings, change, next_slope[i]);
+                response::second_order(command[i], slope[i], setpoint.command[i], tau[i], actuator.inertia, h);
+            next[i] = R::select(oscillates_here, value, next[i]);
+            next_slope[i] = R::select(oscillates_here, change, next_slope[i]);
         }
     }
     (next, next_slope)
@@ -179,10 +185,10 @@ pub fn respond<R: Real>(
 
 /// Body rates that filtered commands stand for, rad/s.
 #[inline(always)]
-pub fn spin<R: Real>(p: &Parameters<R>, command: [R; 4]) -> [R; 3] {
-    let mut spin = Spin { rates: build!(|i| command[i] * p.max_rate[i]), throttle: throttle(command[3]) };
-    effects::spin(&p.beyond.values, &mut spin);
-    spin.rates
+pub fn body_rates<R: Real>(p: &Parameters<R>, command: [R; 4]) -> [R; 3] {
+    let mut body = BodyRates { rates: build!(|i| command[i] * p.max_rate[i]), throttle: throttle(command[3]) };
+    effects::body_rates(&p.beyond.values, &mut body);
+    body.rates
 }
 
 /// Terminal voltage and polarisation (V) after `dt` seconds under the filtered thrust command, from the open-circuit voltage.
@@ -190,14 +196,14 @@ pub fn spin<R: Real>(p: &Parameters<R>, command: [R; 4]) -> [R; 3] {
 pub fn terminal<R: Real>(p: &Parameters<R>, open: R, command: R, polarisation: R, dt: R) -> (R, R) {
     let s = throttle(command);
     let charge = (open - p.beyond.empty_v) / (p.beyond.full_v - p.beyond.empty_v);
-    let mut cell = Cell { load: s * s, dt, charge, polarisation, drop: R::zero() };
-    effects::cell(&p.beyond.values, &mut cell);
-    (open - cell.drop, cell.polarisation)
+    let mut battery_load = BatteryLoad { load: s * s, dt, charge, polarisation, drop: R::zero() };
+    effects::battery_load(&p.beyond.values, &mut battery_load);
+    (open - battery_load.drop, battery_load.polarisation)
 }
 
 /// What thrust and drag depend on.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<R> {
+pub struct ForceInputs<R> {
     /// Filtered thrust command, -1..1.
     pub command: R,
     /// At the terminals, V.
@@ -216,20 +222,20 @@ pub struct Moment<R> {
     pub elapsed: R,
 }
 
-impl<R: Real> Moment<R> {
-    /// The moment of a state, with the body's axes in the world and its velocity along them.
+impl<R: Real> ForceInputs<R> {
+    /// Those of a state, with the body's axes in the world and its velocity along them.
     #[inline(always)]
     pub fn of(s: &State<R>, p: &Parameters<R>, axes: [[R; 3]; 3], velocity: [R; 3]) -> Self {
         let mut rate_error = R::zero();
         for i in 0..3 {
             rate_error = rate_error + (s.memory.line[0][i] - s.command[i]).abs();
         }
-        Moment {
+        ForceInputs {
             command: s.command[3],
             voltage: s.terminal_voltage(p),
             axes,
             velocity,
-            rates: spin(p, s.command),
+            rates: body_rates(p, s.command),
             height: s.position[2],
             rate_error,
             elapsed: elapsed(p, s.voltage),
@@ -245,33 +251,33 @@ fn elapsed<R: Real>(p: &Parameters<R>, open: R) -> R {
 
 /// Specific force, body frame, m/s2.
 #[inline(always)]
-pub fn force<R: Real>(p: &Parameters<R>, at: &Moment<R>) -> [R; 3] {
+pub fn force<R: Real>(p: &Parameters<R>, at: &ForceInputs<R>) -> [R; 3] {
     let values = &p.beyond.values;
     let half = R::of(0.5);
     let middle_v = (p.beyond.full_v + p.beyond.empty_v) * half;
-    let mut supply = Supply { command: at.command, voltage: at.voltage, middle_v };
-    effects::supply(values, &mut supply);
-    let mut air = Air { axes: at.axes, velocity: at.velocity };
-    effects::air(values, &mut air);
-    let damping = drag::damping_in_body(&p.drag, air.velocity);
-    let mut flow = Flow {
+    let mut input = ThrustInput { command: at.command, voltage: at.voltage, middle_v };
+    effects::thrust_input(values, &mut input);
+    let mut wind = RelativeWind { axes: at.axes, velocity: at.velocity };
+    effects::relative_wind(values, &mut wind);
+    let damping = drag::damping_in_body(&p.drag, wind.velocity);
+    let mut forces = AerodynamicForces {
         throttle: throttle(at.command),
-        velocity: air.velocity,
+        velocity: wind.velocity,
         rates: at.rates,
         height: at.height,
         rate_error: at.rate_error,
         elapsed: at.elapsed,
-        lift: thrust::specific_thrust(&p.thrust, supply.command, supply.voltage),
-        force: each!(air.velocity, |v| -damping * v),
+        specific_thrust: thrust::specific_thrust(&p.thrust, input.command, input.voltage),
+        force: each!(wind.velocity, |v| -damping * v),
     };
-    effects::flow(values, &mut flow);
-    [flow.force[0], flow.force[1], flow.force[2] + flow.lift]
+    effects::aerodynamic_forces(values, &mut forces);
+    [forces.force[0], forces.force[1], forces.force[2] + forces.specific_thrust]
 }
 
-/// The mean of what arrived `late` seconds late during the `h` seconds before `end` (s since the newest command of `line`).
+/// The mean of what arrived `delay` seconds late during the `h` seconds before `end` (s since the newest command of `line`).
 #[inline(always)]
-fn arriving<R: Real>(line: &[[R; 4]; LINE], k: usize, late: R, end: R, h: R) -> R {
-    let (from, to) = (end - h - late, end - late);
+fn arriving<R: Real>(line: &[[R; 4]; LINE], k: usize, delay: R, end: R, h: R) -> R {
+    let (from, to) = (end - h - delay, end - delay);
     let mut sum = line[0][k] * (to.max(R::zero()) - from.max(R::zero()));
     for (age, command) in line.iter().enumerate().skip(1) {
         // Held from `begins` to one period later; the oldest was held before, too.
@@ -303,12 +309,12 @@ fn stepped<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R>
     }
     memory.line[0] = action;
     memory.phase = R::select(due, R::zero(), memory.phase);
-    let late = lateness(p);
+    let delay = command_delays(p);
     let h = p.dt * R::of(1.0 / f64::from(p.beyond.parts));
     for _ in 0..p.beyond.parts {
         s.memory.phase = s.memory.phase + h;
         let end = s.memory.phase;
-        let sent = build!(|k| arriving(&s.memory.line, k, late[k], end, h));
+        let sent = build!(|k| arriving(&s.memory.line, k, delay[k], end, h));
         s = part(&s, p, sent, h);
     }
     s
@@ -320,9 +326,9 @@ fn part<R: Real>(s: &State<R>, p: &Parameters<R>, sent: [R; 4], h: R) -> State<R
     let half = h * R::of(0.5);
     let open = battery::discharged(s.voltage, p.voltage_rate, half);
     let (voltage, polarisation) = terminal(p, open, s.command[3], s.memory.polarisation, h);
-    let (command, slope) = respond(p, s.command, s.memory.slope, sent, voltage, h);
+    let (command, slope) = actuator_response(p, s.command, s.memory.slope, sent, voltage, h);
     let mean: [R; 4] = build!(|i| (s.command[i] + command[i]) * R::of(0.5));
-    let rates = spin(p, mean);
+    let rates = body_rates(p, mean);
 
     let half_turn = small_rotation(rates, half);
     let middle = compose(s.attitude, half_turn);
@@ -334,8 +340,8 @@ fn part<R: Real>(s: &State<R>, p: &Parameters<R>, sent: [R; 4], h: R) -> State<R
     }
     let elapsed = elapsed(p, open);
     let height = s.position[2];
-    let moment = Moment { command: mean[3], voltage, axes, velocity, rates, height, rate_error, elapsed };
-    let pushed = force(p, &moment);
+    let inputs = ForceInputs { command: mean[3], voltage, axes, velocity, rates, height, rate_error, elapsed };
+    let pushed = force(p, &inputs);
     let acceleration: [R; 3] = build!(|i| {
         let world = axes[0][i].mul_add(pushed[0], axes[1][i].mul_add(pushed[1], axes[2][i] * pushed[2]));
         if i == 2 { world - p.gravity } else { world }

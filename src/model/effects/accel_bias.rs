@@ -1,21 +1,21 @@
 //! An accelerometer that is off by a constant: f + b.
 
-use super::{Card, Channel, Effect, Kind, Parameter, Sensed};
+use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
 
-pub struct It;
+pub struct AccelBias;
 
-const fn bias(name: &'static str) -> Parameter {
-    Parameter { name, unit: "m/s2", low: -1.2, high: 1.2, typical: [0.05, 0.4] }
+const fn bias(name: &'static str) -> EffectParameter {
+    EffectParameter { name, unit: "m/s2", low: -1.2, high: 1.2, typical: [0.05, 0.4] }
 }
 
-impl Effect for It {
+impl Effect for AccelBias {
     const CARD: Card = Card {
         id: "accel_bias",
         name: "accelerometer bias",
         sentence: "the accelerometer shows a push that is not there",
-        kind: Kind::Sensor,
+        kind: EffectKind::Sensor,
         parameters: &[bias("x"), bias("y"), bias("z")],
-        channels: &[Channel::Force, Channel::Push],
+        channels: &[ResidualChannel::Force, ResidualChannel::Push],
         signature: "specific force is off by a constant in the body that the change of velocity does not know of",
         rivals: &["accel_scale", "imu_misalignment", "steady_wind", "vibration_rectification"],
         manoeuvre: ("many attitudes, and the same leg both ways", &["circle", "roll-flip", "pitch-flip", "forward", "backward"]),

@@ -1,17 +1,17 @@
 //! An accelerometer that reads too much or too little: f (1 + scale).
 
-use super::{Card, Channel, Effect, Kind, Parameter, Sensed};
+use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
 
-pub struct It;
+pub struct AccelScale;
 
-impl Effect for It {
+impl Effect for AccelScale {
     const CARD: Card = Card {
         id: "accel_scale",
         name: "accelerometer scale",
         sentence: "the accelerometer tells more or less than the vehicle feels, by the same share",
-        kind: Kind::Sensor,
-        parameters: &[Parameter { name: "scale", unit: "1", low: -0.1, high: 0.1, typical: [0.005, 0.03] }],
-        channels: &[Channel::Force, Channel::Push],
+        kind: EffectKind::Sensor,
+        parameters: &[EffectParameter { name: "scale", unit: "1", low: -0.1, high: 0.1, typical: [0.005, 0.03] }],
+        channels: &[ResidualChannel::Force, ResidualChannel::Push],
         signature: "specific force is off by a share that the change of velocity does not know of",
         rivals: &["mass_or_density", "accel_bias", "vibration_rectification"],
         manoeuvre: ("none to full thrust in many attitudes", &["punch", "chop", "ramp-up", "roll-flip"]),

@@ -1,17 +1,17 @@
 //! A clock that runs fast or slow: t becomes (1 + skew) t.
 
-use super::{Card, Channel, Effect, Kind, Parameter};
+use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter};
 
-pub struct It;
+pub struct ClockSkew;
 
-impl Effect for It {
+impl Effect for ClockSkew {
     const CARD: Card = Card {
         id: "clock_skew",
         name: "clock skew",
         sentence: "one recorder's clock drifts away from the other's over the flight",
-        kind: Kind::Sensor,
-        parameters: &[Parameter { name: "skew", unit: "1", low: -0.03, high: 0.03, typical: [1e-4, 0.016] }],
-        channels: &[Channel::Rate, Channel::Turn],
+        kind: EffectKind::Sensor,
+        parameters: &[EffectParameter { name: "skew", unit: "1", low: -0.03, high: 0.03, typical: [1e-4, 0.016] }],
+        channels: &[ResidualChannel::Rate, ResidualChannel::Turn],
         signature: "the shift between gyro and attitude grows over the log",
         rivals: &["stream_offset", "gyro_scale", "response_voltage"],
         manoeuvre: ("the same fast doublets early and late in a long log", &["roll-doublets", "pitch-doublets", "yaw-doublets"]),

@@ -1,21 +1,21 @@
 //! A gyro that is off by a constant: w + b.
 
-use super::{Card, Channel, Effect, Kind, Parameter, Sensed};
+use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
 
-pub struct It;
+pub struct GyroBias;
 
-const fn bias(name: &'static str) -> Parameter {
-    Parameter { name, unit: "rad/s", low: -0.06, high: 0.06, typical: [0.01, 0.03] }
+const fn bias(name: &'static str) -> EffectParameter {
+    EffectParameter { name, unit: "rad/s", low: -0.06, high: 0.06, typical: [0.01, 0.03] }
 }
 
-impl Effect for It {
+impl Effect for GyroBias {
     const CARD: Card = Card {
         id: "gyro_bias",
         name: "gyro bias",
         sentence: "the gyro shows a slow turn that is not there",
-        kind: Kind::Sensor,
+        kind: EffectKind::Sensor,
         parameters: &[bias("x"), bias("y"), bias("z")],
-        channels: &[Channel::Rate, Channel::Turn],
+        channels: &[ResidualChannel::Rate, ResidualChannel::Turn],
         signature: "the integrated gyro drifts away from the attitude at a constant rate",
         rivals: &["weak_motor"],
         manoeuvre: ("calm flight at low and at high throttle", &["ramp-up", "ramp-down", "forward"]),

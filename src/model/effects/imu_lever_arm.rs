@@ -1,22 +1,22 @@
 //! An IMU away from the centre of mass feels its own turning: f += w' x r + w x (w x r).
 
-use super::{Card, Channel, Effect, Kind, Parameter, Sensed};
+use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
 use crate::model::attitude::cross;
 
-pub struct It;
+pub struct ImuLeverArm;
 
-const fn arm(name: &'static str) -> Parameter {
-    Parameter { name, unit: "m", low: -0.1, high: 0.1, typical: [0.005, 0.03] }
+const fn arm(name: &'static str) -> EffectParameter {
+    EffectParameter { name, unit: "m", low: -0.1, high: 0.1, typical: [0.005, 0.03] }
 }
 
-impl Effect for It {
+impl Effect for ImuLeverArm {
     const CARD: Card = Card {
         id: "imu_lever_arm",
         name: "IMU lever arm",
         sentence: "the flight controller sits away from the centre of mass and feels every turn as acceleration",
-        kind: Kind::Sensor,
+        kind: EffectKind::Sensor,
         parameters: &[arm("rx"), arm("ry"), arm("rz")],
-        channels: &[Channel::Force, Channel::Push],
+        channels: &[ResidualChannel::Force, ResidualChannel::Push],
         signature: "specific force on all axes follows squares of body rates and angular acceleration, and does not move the vehicle",
         rivals: &["rate_thrust_coupling"],
         manoeuvre: ("flips, spins and sharp rate steps", &["roll-flip", "pitch-flip", "yaw-spin", "rate-steps"]),

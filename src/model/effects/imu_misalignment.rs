@@ -1,22 +1,22 @@
 //! An IMU that is mounted askew: rates and force x become x + r x x, r the small rotation from the body to the sensor.
 
-use super::{Card, Channel, Effect, Kind, Parameter, Sensed};
+use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
 use crate::model::attitude::cross;
 
-pub struct It;
+pub struct ImuMisalignment;
 
-const fn angle(name: &'static str) -> Parameter {
-    Parameter { name, unit: "rad", low: -0.2, high: 0.2, typical: [0.005, 0.07] }
+const fn angle(name: &'static str) -> EffectParameter {
+    EffectParameter { name, unit: "rad", low: -0.2, high: 0.2, typical: [0.005, 0.07] }
 }
 
-impl Effect for It {
+impl Effect for ImuMisalignment {
     const CARD: Card = Card {
         id: "imu_misalignment",
         name: "IMU mounted askew",
         sentence: "the flight controller is not mounted level or straight, so that thrust seems to push sideways",
-        kind: Kind::Sensor,
+        kind: EffectKind::Sensor,
         parameters: &[angle("rx"), angle("ry"), angle("rz")],
-        channels: &[Channel::Rate, Channel::Force, Channel::Turn, Channel::Push],
+        channels: &[ResidualChannel::Rate, ResidualChannel::Force, ResidualChannel::Turn, ResidualChannel::Push],
         signature: "horizontal specific force follows the thrust and off-axis gyro the rates, and neither moves the vehicle",
         rivals: &["rate_cross_coupling", "accel_bias", "velocity_lag"],
         manoeuvre: ("throttle ramps and flips on one axis at a time", &["ramp-up", "punch", "roll-flip", "pitch-flip", "yaw-spin"]),

@@ -1,18 +1,18 @@
-//! Another mass or density of the air: every specific force is scaled by 1 + share.
+//! Another mass or density of the wind: every specific force is scaled by 1 + share.
 
-use super::{Card, Channel, Effect, Flow, Kind, Parameter};
+use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct MassOrDensity;
 
-impl Effect for It {
+impl Effect for MassOrDensity {
     const CARD: Card = Card {
         id: "mass_or_density",
         name: "another mass or air density",
         sentence: "everything pushes and brakes by the same share more or less: the vehicle weighs something else, or the air does",
-        kind: Kind::Thrust,
-        parameters: &[Parameter { name: "share", unit: "1", low: -0.6, high: 0.6, typical: [0.05, 0.3] }],
-        channels: &[Channel::Force],
+        kind: EffectKind::Thrust,
+        parameters: &[EffectParameter { name: "share", unit: "1", low: -0.6, high: 0.6, typical: [0.05, 0.3] }],
+        channels: &[ResidualChannel::Force],
         signature: "thrust and drag are off by the same share",
         rivals: &["accel_scale"],
         manoeuvre: ("punches and fast passes; weigh the vehicle and read the barometer", &["punch", "forward", "backward"]),
@@ -20,9 +20,9 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn flow<R: Real>(k: &[R], flow: &mut Flow<R>) {
+    fn aerodynamic_forces<R: Real>(k: &[R], forces: &mut AerodynamicForces<R>) {
         let scale = R::one() + k[0];
-        flow.lift = flow.lift * scale;
-        flow.force = crate::base::lane::each!(flow.force, |f| f * scale);
+        forces.specific_thrust = forces.specific_thrust * scale;
+        forces.force = crate::base::lane::each!(forces.force, |f| f * scale);
     }
 }

@@ -1,18 +1,18 @@
 //! Thrust given up for turning: f_T is scaled by 1 - k times the sum of |command - response| over the axes.
 
-use super::{Card, Channel, Effect, Flow, Kind, Parameter};
+use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct MixerThrustLoss;
 
-impl Effect for It {
+impl Effect for MixerThrustLoss {
     const CARD: Card = Card {
         id: "mixer_thrust_loss",
         name: "thrust lost to the mixer",
         sentence: "the vehicle drops a little whenever it is jerked around",
-        kind: Kind::Thrust,
-        parameters: &[Parameter { name: "k", unit: "1", low: 0.0, high: 0.25, typical: [0.02, 0.1] }],
-        channels: &[Channel::Force],
+        kind: EffectKind::Thrust,
+        parameters: &[EffectParameter { name: "k", unit: "1", low: 0.0, high: 0.25, typical: [0.02, 0.1] }],
+        channels: &[ResidualChannel::Force],
         signature: "vertical specific force dips while the rates are behind their commands",
         rivals: &["rate_thrust_coupling"],
         manoeuvre: ("flips and sharp steps at one throttle", &["roll-flip", "pitch-flip", "rate-steps"]),
@@ -20,7 +20,7 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn flow<R: Real>(k: &[R], flow: &mut Flow<R>) {
-        flow.lift = flow.lift * (R::one() - k[0] * flow.rate_error);
+    fn aerodynamic_forces<R: Real>(k: &[R], forces: &mut AerodynamicForces<R>) {
+        forces.specific_thrust = forces.specific_thrust * (R::one() - k[0] * forces.rate_error);
     }
 }

@@ -1,18 +1,18 @@
 //! Open-circuit voltage as an S over the charge instead of a line: V += k P3(2 c - 1), P3 the third Legendre polynomial.
 
-use super::{Card, Cell, Channel, Effect, Kind, Parameter};
+use super::{Card, BatteryLoad, ResidualChannel, Effect, EffectKind, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct OcvCurve;
 
-impl Effect for It {
+impl Effect for OcvCurve {
     const CARD: Card = Card {
         id: "ocv_curve",
         name: "S-shaped discharge curve",
         sentence: "the voltage falls fast at first, then hardly, then fast again at the end of the pack",
-        kind: Kind::Battery,
-        parameters: &[Parameter { name: "k", unit: "V", low: -2.0, high: 2.0, typical: [0.2, 0.8] }],
-        channels: &[Channel::Voltage],
+        kind: EffectKind::Battery,
+        parameters: &[EffectParameter { name: "k", unit: "V", low: -2.0, high: 2.0, typical: [0.2, 0.8] }],
+        channels: &[ResidualChannel::Voltage],
         signature: "the voltage without load leaves the line as a cubic over the pack",
         rivals: &["voltage_sag"],
         manoeuvre: ("one whole pack from full to empty", &["circle", "forward", "backward"]),
@@ -20,9 +20,9 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn cell<R: Real>(k: &[R], cell: &mut Cell<R>) {
-        let x = (cell.charge + cell.charge).clamp(R::zero(), R::of(2.0)) - R::one();
+    fn battery_load<R: Real>(k: &[R], battery: &mut BatteryLoad<R>) {
+        let x = (battery.charge + battery.charge).clamp(R::zero(), R::of(2.0)) - R::one();
         let cubic = x * (x * x).mul_add(R::of(2.5), R::of(-1.5));
-        cell.drop = cell.drop - k[0] * cubic;
+        battery.drop = battery.drop - k[0] * cubic;
     }
 }

@@ -1,9 +1,9 @@
 //! Thrust lost in the own wake: f_T is scaled by 1 - k g(-v_z / v_i), most where the descent is 1.2 times the induced velocity v_i.
 
-use super::{Card, Channel, Effect, Flow, Kind, Parameter};
+use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct Propwash;
 
 /// Induced velocity over the root of thrust over mass, of a 5-inch quadrotor.
 const INDUCED: f64 = 1.6;
@@ -12,14 +12,14 @@ const WORST: f64 = 1.2;
 const WIDTH: f64 = 0.5;
 const ONSET: f64 = 0.6;
 
-impl Effect for It {
+impl Effect for Propwash {
     const CARD: Card = Card {
         id: "propwash",
         name: "propwash",
         sentence: "sinking into its own wake the vehicle drops faster and shakes",
-        kind: Kind::Thrust,
-        parameters: &[Parameter { name: "k", unit: "1", low: 0.0, high: 0.8, typical: [0.08, 0.33] }],
-        channels: &[Channel::Force],
+        kind: EffectKind::Thrust,
+        parameters: &[EffectParameter { name: "k", unit: "1", low: 0.0, high: 0.8, typical: [0.08, 0.33] }],
+        channels: &[ResidualChannel::Force],
         signature: "vertical specific force drops, and its scatter grows, in descents near the induced velocity only",
         rivals: &["axial_inflow"],
         manoeuvre: ("vertical and slanted descents at several speeds", &["descent", "dive", "chop"]),
@@ -27,10 +27,10 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn flow<R: Real>(k: &[R], flow: &mut Flow<R>) {
-        let x = -flow.velocity[2] / (flow.lift.max(R::of(0.1)).sqrt() * R::of(INDUCED));
+    fn aerodynamic_forces<R: Real>(k: &[R], forces: &mut AerodynamicForces<R>) {
+        let x = -forces.velocity[2] / (forces.specific_thrust.max(R::of(0.1)).sqrt() * R::of(INDUCED));
         let off = (x - R::of(WORST)) * R::of(1.0 / WIDTH);
         let within = (x * R::of(1.0 / ONSET)).clamp(R::zero(), R::one());
-        flow.lift = flow.lift * (R::one() - k[0] * (-(off * off)).exp() * within);
+        forces.specific_thrust = forces.specific_thrust * (R::one() - k[0] * (-(off * off)).exp() * within);
     }
 }

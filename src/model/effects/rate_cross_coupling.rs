@@ -1,22 +1,22 @@
 //! Rolling pitches, and pitching rolls: w_x += k_xy w_y, w_y += k_yx w_x.
 
-use super::{Card, Channel, Effect, Kind, Parameter, Spin};
+use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, BodyRates};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct RateCrossCoupling;
 
-const fn share(name: &'static str) -> Parameter {
-    Parameter { name, unit: "1", low: -0.3, high: 0.3, typical: [0.01, 0.1] }
+const fn share(name: &'static str) -> EffectParameter {
+    EffectParameter { name, unit: "1", low: -0.3, high: 0.3, typical: [0.01, 0.1] }
 }
 
-impl Effect for It {
+impl Effect for RateCrossCoupling {
     const CARD: Card = Card {
         id: "rate_cross_coupling",
         name: "coupling of roll and pitch",
         sentence: "a pure roll also pitches a little, or a pure pitch rolls",
-        kind: Kind::Timing,
+        kind: EffectKind::Timing,
         parameters: &[share("kxy"), share("kyx")],
-        channels: &[Channel::Rate],
+        channels: &[ResidualChannel::Rate],
         signature: "the off-axis rate follows the other axis in proportion, in gyro and attitude alike",
         rivals: &["imu_misalignment", "gyroscopic_coupling"],
         manoeuvre: ("doublets and flips on one axis at a time", &["roll-doublets", "pitch-doublets", "roll-flip", "pitch-flip"]),
@@ -24,8 +24,8 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn spin<R: Real>(k: &[R], spin: &mut Spin<R>) {
-        let [x, y, z] = spin.rates;
-        spin.rates = [k[0].mul_add(y, x), k[1].mul_add(x, y), z];
+    fn body_rates<R: Real>(k: &[R], body: &mut BodyRates<R>) {
+        let [x, y, z] = body.rates;
+        body.rates = [k[0].mul_add(y, x), k[1].mul_add(x, y), z];
     }
 }

@@ -1,18 +1,18 @@
 //! Curved stick response: a becomes (1 - e) a + e a^3.
 
-use super::{Asked, Card, Channel, Effect, Kind, Parameter};
+use super::{Setpoint, Card, ResidualChannel, Effect, EffectKind, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct RateExpo;
 
-impl Effect for It {
+impl Effect for RateExpo {
     const CARD: Card = Card {
         id: "rate_expo",
         name: "expo on the rates",
         sentence: "half a stick gives less than half of the full rate, though full stick gives all of it",
-        kind: Kind::Timing,
-        parameters: &[Parameter { name: "e", unit: "1", low: -0.5, high: 1.0, typical: [0.05, 0.5] }],
-        channels: &[Channel::Rate],
+        kind: EffectKind::Timing,
+        parameters: &[EffectParameter { name: "e", unit: "1", low: -0.5, high: 1.0, typical: [0.05, 0.5] }],
+        channels: &[ResidualChannel::Rate],
         signature: "the settled rate is a curve of the stick, the same at every speed of the stick",
         rivals: &["rate_slew_limit", "gyro_scale"],
         manoeuvre: ("steps of several sizes, held until the rate settles", &["roll-steps", "pitch-steps", "yaw-steps"]),
@@ -20,10 +20,10 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn ask<R: Real>(k: &[R], asked: &mut Asked<R>) {
+    fn setpoint<R: Real>(k: &[R], setpoint: &mut Setpoint<R>) {
         for i in 0..3 {
-            let a = asked.command[i];
-            asked.command[i] = k[0].mul_add(a * a * a - a, a);
+            let a = setpoint.command[i];
+            setpoint.command[i] = k[0].mul_add(a * a * a - a, a);
         }
     }
 }

@@ -1,19 +1,19 @@
 //! Second-order response of the body rates: T2 w'' + tau w' + w = w_sp, with T2 = 1 / wn^2 and tau = 2 zeta / wn.
 
-use super::{Card, Channel, Effect, Kind, Lag, Parameter};
+use super::{Card, ResidualChannel, Effect, EffectKind, Actuator, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct RateSecondOrder;
 
-impl Effect for It {
+impl Effect for RateSecondOrder {
     const CARD: Card = Card {
         id: "rate_second_order",
         name: "second-order rate response",
         sentence: "the rates overshoot and ring after a stick step instead of creeping to their goal",
-        kind: Kind::Timing,
+        kind: EffectKind::Timing,
         // wn of 150 to 60 rad/s.
-        parameters: &[Parameter { name: "T2", unit: "s2", low: 0.0, high: 2e-3, typical: [4.4e-5, 2.8e-4] }],
-        channels: &[Channel::Rate],
+        parameters: &[EffectParameter { name: "T2", unit: "s2", low: 0.0, high: 2e-3, typical: [4.4e-5, 2.8e-4] }],
+        channels: &[ResidualChannel::Rate],
         signature: "the gyro rings after steps, at one frequency",
         rivals: &["rate_delay", "rate_slew_limit"],
         manoeuvre: ("sharp steps and fast stick doublets, then hands off", &["rate-steps", "roll-doublets", "pitch-doublets"]),
@@ -24,7 +24,7 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn lag<R: Real>(k: &[R], lag: &mut Lag<R>) {
-        lag.inertia = lag.inertia + k[0];
+    fn actuator<R: Real>(k: &[R], actuator: &mut Actuator<R>) {
+        actuator.inertia = actuator.inertia + k[0];
     }
 }

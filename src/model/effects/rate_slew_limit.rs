@@ -1,22 +1,22 @@
 //! Largest angular acceleration: |dw/dt| <= alpha_max, in yaw 30 % of that of roll and pitch.
 
-use super::{Card, Channel, Effect, Kind, Lag, Parameter};
+use super::{Card, ResidualChannel, Effect, EffectKind, Actuator, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct RateSlewLimit;
 
 /// Yaw comes from reaction torque, which is weaker.
 const YAW_SHARE: f64 = 0.3;
 
-impl Effect for It {
+impl Effect for RateSlewLimit {
     const CARD: Card = Card {
         id: "rate_slew_limit",
         name: "angular acceleration limit",
         sentence: "large stick steps take longer than small ones, because the motors cannot turn the vehicle faster up",
-        kind: Kind::Timing,
+        kind: EffectKind::Timing,
         // One over the limit, so that none is 0.
-        parameters: &[Parameter { name: "slew", unit: "s2/rad", low: 0.0, high: 0.05, typical: [1.0 / 600.0, 1.0 / 100.0] }],
-        channels: &[Channel::Rate],
+        parameters: &[EffectParameter { name: "slew", unit: "s2/rad", low: 0.0, high: 0.05, typical: [1.0 / 600.0, 1.0 / 100.0] }],
+        channels: &[ResidualChannel::Rate],
         signature: "the gyro falls behind after large steps only, along a straight line",
         rivals: &["rate_delay", "rate_second_order", "rate_expo"],
         manoeuvre: ("steps of several sizes on every axis", &["rate-steps", "roll-steps", "pitch-steps", "yaw-steps"]),
@@ -24,8 +24,8 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn lag<R: Real>(k: &[R], lag: &mut Lag<R>) {
+    fn actuator<R: Real>(k: &[R], actuator: &mut Actuator<R>) {
         let yaw = k[0] * R::of(1.0 / YAW_SHARE);
-        lag.slew = [lag.slew[0] + k[0], lag.slew[1] + k[0], lag.slew[2] + yaw];
+        actuator.slew = [actuator.slew[0] + k[0], actuator.slew[1] + k[0], actuator.slew[2] + yaw];
     }
 }

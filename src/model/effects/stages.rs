@@ -2,7 +2,7 @@
 
 /// Time between a command and its arrival, s.
 #[derive(Clone, Copy, Debug)]
-pub struct Late<R> {
+pub struct CommandDelay<R> {
     pub rates: R,
     /// Of yaw, beyond that of all rates.
     pub yaw: R,
@@ -11,7 +11,7 @@ pub struct Late<R> {
 
 /// Commands before the lag.
 #[derive(Clone, Copy, Debug)]
-pub struct Asked<R> {
+pub struct Setpoint<R> {
     /// Roll, pitch, yaw, thrust, -1..1.
     pub command: [R; 4],
     /// Filtered throttle, 0..1.
@@ -25,7 +25,7 @@ pub struct Asked<R> {
 
 /// How rates and thrust follow their commands.
 #[derive(Clone, Copy, Debug)]
-pub struct Lag<R> {
+pub struct Actuator<R> {
     /// Time constants of roll, pitch, yaw, thrust, s.
     pub tau: [R; 4],
     /// That of falling thrust, s.
@@ -40,7 +40,7 @@ pub struct Lag<R> {
 
 /// From filtered commands to body rates.
 #[derive(Clone, Copy, Debug)]
-pub struct Spin<R> {
+pub struct BodyRates<R> {
     /// Body frame, rad/s.
     pub rates: [R; 3],
     /// Filtered throttle, 0..1.
@@ -49,7 +49,7 @@ pub struct Spin<R> {
 
 /// The battery under load.
 #[derive(Clone, Copy, Debug)]
-pub struct Cell<R> {
+pub struct BatteryLoad<R> {
     /// Current as a share of that at full throttle: the filtered throttle (0..1) squared.
     pub load: R,
     /// Time since the last call, s; 0 to look only.
@@ -64,7 +64,7 @@ pub struct Cell<R> {
 
 /// What reaches the thrust curve.
 #[derive(Clone, Copy, Debug)]
-pub struct Supply<R> {
+pub struct ThrustInput<R> {
     /// Filtered thrust command, -1..1.
     pub command: R,
     /// Terminal voltage, V.
@@ -75,7 +75,7 @@ pub struct Supply<R> {
 
 /// Motion through the air.
 #[derive(Clone, Copy, Debug)]
-pub struct Air<R> {
+pub struct RelativeWind<R> {
     /// The body's axes in the world.
     pub axes: [[R; 3]; 3],
     /// Velocity through the air, body frame, m/s.
@@ -84,7 +84,7 @@ pub struct Air<R> {
 
 /// Thrust and drag.
 #[derive(Clone, Copy, Debug)]
-pub struct Flow<R> {
+pub struct AerodynamicForces<R> {
     /// Filtered throttle, 0..1.
     pub throttle: R,
     /// Velocity through the air, body frame, m/s.
@@ -97,8 +97,8 @@ pub struct Flow<R> {
     pub rate_error: R,
     /// Time since the battery was full, s.
     pub elapsed: R,
-    /// Thrust over mass, m/s2.
-    pub lift: R,
+    /// Specific thrust (thrust over mass), m/s2.
+    pub specific_thrust: R,
     /// Everything else, body frame, m/s2.
     pub force: [R; 3],
 }

@@ -1,18 +1,18 @@
 //! Rotors that slow down later than they speed up: tau of falling thrust is that of rising thrust plus a difference.
 
-use super::{Card, Channel, Effect, Kind, Lag, Parameter};
+use super::{Card, ResidualChannel, Effect, EffectKind, Actuator, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct ThrustAsymmetricLag;
 
-impl Effect for It {
+impl Effect for ThrustAsymmetricLag {
     const CARD: Card = Card {
         id: "thrust_asymmetric_lag",
         name: "spin-down slower than spin-up",
         sentence: "thrust dies away more slowly after a throttle cut than it builds up after a punch",
-        kind: Kind::Timing,
-        parameters: &[Parameter { name: "difference", unit: "s", low: -0.02, high: 0.08, typical: [0.004, 0.025] }],
-        channels: &[Channel::Force],
+        kind: EffectKind::Timing,
+        parameters: &[EffectParameter { name: "difference", unit: "s", low: -0.02, high: 0.08, typical: [0.004, 0.025] }],
+        channels: &[ResidualChannel::Force],
         signature: "vertical specific force lags after throttle cuts, not after punches",
         rivals: &["thrust_delay", "throttle_offset"],
         manoeuvre: ("throttle steps up and down of the same size, and cuts", &["throttle-steps", "punch", "chop"]),
@@ -20,7 +20,7 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn lag<R: Real>(k: &[R], lag: &mut Lag<R>) {
-        lag.tau_down = (lag.tau_down + k[0]).max(R::of(0.0005));
+    fn actuator<R: Real>(k: &[R], actuator: &mut Actuator<R>) {
+        actuator.tau_down = (actuator.tau_down + k[0]).max(R::of(0.0005));
     }
 }

@@ -1,18 +1,18 @@
 //! Pure delay of the thrust command: u(t) becomes u(t - d).
 
-use super::{Card, Channel, Effect, Kind, Late, Parameter};
+use super::{Card, ResidualChannel, Effect, EffectKind, CommandDelay, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct ThrustDelay;
 
-impl Effect for It {
+impl Effect for ThrustDelay {
     const CARD: Card = Card {
         id: "thrust_delay",
         name: "thrust command delay",
         sentence: "the motors answer the throttle later than a lag alone explains",
-        kind: Kind::Timing,
-        parameters: &[Parameter { name: "delay", unit: "s", low: 0.0, high: 0.12, typical: [0.002, 0.03] }],
-        channels: &[Channel::Force],
+        kind: EffectKind::Timing,
+        parameters: &[EffectParameter { name: "delay", unit: "s", low: 0.0, high: 0.12, typical: [0.002, 0.03] }],
+        channels: &[ResidualChannel::Force],
         signature: "vertical specific force lags the simulated thrust by the same time at every frequency",
         rivals: &["thrust_asymmetric_lag"],
         manoeuvre: ("throttle steps up and down, and punches", &["throttle-steps", "punch", "chop"]),
@@ -20,7 +20,7 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn late<R: Real>(k: &[R], late: &mut Late<R>) {
-        late.thrust = late.thrust + k[0];
+    fn command_delay<R: Real>(k: &[R], delay: &mut CommandDelay<R>) {
+        delay.thrust = delay.thrust + k[0];
     }
 }

@@ -1,18 +1,18 @@
-//! Thrust gained from fresh air: f_T += k v_h^2 (momentum theory).
+//! Thrust gained from fresh wind: f_T += k v_h^2 (momentum theory).
 
-use super::{Card, Channel, Effect, Flow, Kind, Parameter};
+use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct TranslationalLift;
 
-impl Effect for It {
+impl Effect for TranslationalLift {
     const CARD: Card = Card {
         id: "translational_lift",
         name: "translational lift",
         sentence: "in fast level flight the vehicle carries itself on less throttle",
-        kind: Kind::Thrust,
-        parameters: &[Parameter { name: "k", unit: "1/m", low: 0.0, high: 0.08, typical: [0.003, 0.03] }],
-        channels: &[Channel::Force],
+        kind: EffectKind::Thrust,
+        parameters: &[EffectParameter { name: "k", unit: "1/m", low: 0.0, high: 0.08, typical: [0.003, 0.03] }],
+        channels: &[ResidualChannel::Force],
         signature: "vertical specific force grows with the square of the speed across the rotors",
         rivals: &["body_lift"],
         manoeuvre: ("level passes from slow to fast", &["forward", "backward", "left", "right"]),
@@ -20,8 +20,8 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn flow<R: Real>(k: &[R], flow: &mut Flow<R>) {
-        let [x, y, _] = flow.velocity;
-        flow.lift = k[0].mul_add(x.mul_add(x, y * y), flow.lift);
+    fn aerodynamic_forces<R: Real>(k: &[R], forces: &mut AerodynamicForces<R>) {
+        let [x, y, _] = forces.velocity;
+        forces.specific_thrust = k[0].mul_add(x.mul_add(x, y * y), forces.specific_thrust);
     }
 }

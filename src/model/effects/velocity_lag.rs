@@ -1,17 +1,17 @@
 //! The estimator's velocity is smoothed: tau v' + v = v_true.
 
-use super::{Card, Channel, Effect, Kind, Parameter};
+use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter};
 
-pub struct It;
+pub struct VelocityLag;
 
-impl Effect for It {
+impl Effect for VelocityLag {
     const CARD: Card = Card {
         id: "velocity_lag",
         name: "lagging velocity estimate",
         sentence: "the velocity in the log is smoother and later than the flight was",
-        kind: Kind::Sensor,
-        parameters: &[Parameter { name: "tau", unit: "s", low: 0.0, high: 0.2, typical: [0.01, 0.08] }],
-        channels: &[Channel::Push],
+        kind: EffectKind::Sensor,
+        parameters: &[EffectParameter { name: "tau", unit: "s", low: 0.0, high: 0.2, typical: [0.01, 0.08] }],
+        channels: &[ResidualChannel::Push],
         signature: "the change of velocity trails the integrated accelerometer after every punch",
         rivals: &["imu_misalignment"],
         manoeuvre: ("punches, cuts and reversals of direction", &["punch", "chop", "forward", "backward"]),

@@ -1,18 +1,18 @@
 //! Voltage lost to the battery's inner resistance at once: V = V_oc - v s^2, v at full throttle.
 
-use super::{Card, Cell, Channel, Effect, Kind, Parameter};
+use super::{Card, BatteryLoad, ResidualChannel, Effect, EffectKind, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct VoltageSag;
 
-impl Effect for It {
+impl Effect for VoltageSag {
     const CARD: Card = Card {
         id: "voltage_sag",
         name: "voltage sag",
         sentence: "the voltage drops the moment the throttle opens and is back when it closes",
-        kind: Kind::Battery,
-        parameters: &[Parameter { name: "v_full", unit: "V", low: 0.0, high: 8.0, typical: [0.8, 3.0] }],
-        channels: &[Channel::Voltage],
+        kind: EffectKind::Battery,
+        parameters: &[EffectParameter { name: "v_full", unit: "V", low: 0.0, high: 8.0, typical: [0.8, 3.0] }],
+        channels: &[ResidualChannel::Voltage],
         signature: "the voltage falls with the square of the throttle, at once",
         rivals: &["voltage_relaxation", "ocv_curve"],
         manoeuvre: ("punches with rest between them", &["punch", "chop", "throttle-steps"]),
@@ -20,7 +20,7 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn cell<R: Real>(k: &[R], cell: &mut Cell<R>) {
-        cell.drop = k[0].mul_add(cell.load, cell.drop);
+    fn battery_load<R: Real>(k: &[R], battery: &mut BatteryLoad<R>) {
+        battery.drop = k[0].mul_add(battery.load, battery.drop);
     }
 }

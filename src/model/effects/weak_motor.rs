@@ -1,22 +1,22 @@
 //! A motor or propeller that gives less than the others: w += b s.
 
-use super::{Card, Channel, Effect, Kind, Parameter, Spin};
+use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, BodyRates};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct WeakMotor;
 
-const fn rate(name: &'static str) -> Parameter {
-    Parameter { name, unit: "rad/s", low: -1.5, high: 1.5, typical: [0.05, 0.6] }
+const fn rate(name: &'static str) -> EffectParameter {
+    EffectParameter { name, unit: "rad/s", low: -1.5, high: 1.5, typical: [0.05, 0.6] }
 }
 
-impl Effect for It {
+impl Effect for WeakMotor {
     const CARD: Card = Card {
         id: "weak_motor",
         name: "weak motor",
         sentence: "the vehicle leans and turns by itself, the more the higher the throttle",
-        kind: Kind::Timing,
+        kind: EffectKind::Timing,
         parameters: &[rate("bx"), rate("by"), rate("bz")],
-        channels: &[Channel::Rate],
+        channels: &[ResidualChannel::Rate],
         signature: "the mean rate without command grows in proportion to the throttle",
         rivals: &["gyro_bias"],
         manoeuvre: ("slow throttle sweeps with the other sticks centred", &["ramp-up", "ramp-down", "punch"]),
@@ -27,9 +27,9 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn spin<R: Real>(k: &[R], spin: &mut Spin<R>) {
-        for (rate, b) in spin.rates.iter_mut().zip(k) {
-            *rate = b.mul_add(spin.throttle, *rate);
+    fn body_rates<R: Real>(k: &[R], body: &mut BodyRates<R>) {
+        for (rate, b) in body.rates.iter_mut().zip(k) {
+            *rate = b.mul_add(body.throttle, *rate);
         }
     }
 }

@@ -1,19 +1,19 @@
 //! Pure delay of the yaw command beyond that of roll and pitch, of either sign: yaw goes through other filters and is made by torque, not by thrust.
 //! The catalogue had one delay for all axes; IndiFlight's flights ask for two.
 
-use super::{Card, Channel, Effect, Kind, Late, Parameter};
+use super::{Card, ResidualChannel, Effect, EffectKind, CommandDelay, EffectParameter};
 use crate::base::lane::Real;
 
-pub struct It;
+pub struct YawDelay;
 
-impl Effect for It {
+impl Effect for YawDelay {
     const CARD: Card = Card {
         id: "yaw_delay",
         name: "yaw command delay",
         sentence: "yaw starts to turn later, or earlier, than roll and pitch do",
-        kind: Kind::Timing,
-        parameters: &[Parameter { name: "extra", unit: "s", low: -0.06, high: 0.06, typical: [0.004, 0.03] }],
-        channels: &[Channel::Rate],
+        kind: EffectKind::Timing,
+        parameters: &[EffectParameter { name: "extra", unit: "s", low: -0.06, high: 0.06, typical: [0.004, 0.03] }],
+        channels: &[ResidualChannel::Rate],
         signature: "the gyro's yaw lags the simulated rate by another time than its roll and pitch",
         rivals: &["rate_delay"],
         manoeuvre: ("sharp yaw steps and doublets", &["yaw-steps", "yaw-doublets", "yaw-spin"]),
@@ -21,7 +21,7 @@ impl Effect for It {
     };
 
     #[inline(always)]
-    fn late<R: Real>(k: &[R], late: &mut Late<R>) {
-        late.yaw = late.yaw + k[0];
+    fn command_delay<R: Real>(k: &[R], delay: &mut CommandDelay<R>) {
+        delay.yaw = delay.yaw + k[0];
     }
 }

@@ -1,7 +1,7 @@
 //! The residual along a signal, in levels that are equally often met.
 
 use crate::base::stats::quantile;
-use crate::insight::diagnose::problem::{Problem, State};
+use crate::insight::diagnose::problem::{Predictions, Problem};
 use crate::insight::diagnose::structure;
 use std::collections::BTreeMap;
 
@@ -13,18 +13,18 @@ const LEAST: usize = 20;
 pub struct Profile {
     pub signal: &'static str,
     pub unit: &'static str,
-    pub levels: Vec<Level>,
+    pub levels: Vec<ProfileLevel>,
 }
 
 /// Mean of the signal, and means of the residuals with their standard errors.
-pub struct Level {
+pub struct ProfileLevel {
     pub signal: f64,
     pub before: [f64; 2],
     pub after: [f64; 2],
 }
 
 /// Both residuals of channel `c` along the signal of this name.
-pub fn along(problem: &Problem, state: &State, c: usize, name: &str, residuals: [&[f64]; 2]) -> Option<Profile> {
+pub fn along(problem: &Problem, state: &Predictions, c: usize, name: &str, residuals: [&[f64]; 2]) -> Option<Profile> {
     let (signal, unit, values) = structure::signals(problem, state, c).into_iter().find(|(n, _, _)| *n == name)?;
     let known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let mut edges: Vec<f64> = (1..=LEVELS).map(|b| quantile(&known, b as f64 / LEVELS as f64)).collect();
@@ -34,12 +34,12 @@ pub fn along(problem: &Problem, state: &State, c: usize, name: &str, residuals: 
         members[edges.partition_point(|edge| edge < value).min(edges.len() - 1)].push(i);
     }
     let block: Vec<u32> = problem.rows[c].iter().map(|row| row.block).collect();
-    let level = |rows: &Vec<usize>| Level {
+    let level = |rows: &Vec<usize>| ProfileLevel {
         signal: rows.iter().map(|&i| values[i]).sum::<f64>() / rows.len() as f64,
         before: average(rows, residuals[0], &block),
         after: average(rows, residuals[1], &block),
     };
-    let levels: Vec<Level> = members.iter().filter(|rows| rows.len() >= LEAST).map(level).collect();
+    let levels: Vec<ProfileLevel> = members.iter().filter(|rows| rows.len() >= LEAST).map(level).collect();
     (levels.len() > 1).then_some(Profile { signal, unit, levels })
 }
 

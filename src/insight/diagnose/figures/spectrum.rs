@@ -1,6 +1,6 @@
 //! Power density of a residual (Welch): segments that overlap by half, each less its mean and under a Hann window.
 
-use super::windows::Run;
+use super::windows::UnbrokenRows;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 use std::f64::consts::TAU;
@@ -21,9 +21,9 @@ pub struct Spectra {
 }
 
 /// Both residuals of a channel; none where no run is long enough.
-pub fn spectra(runs: &[Run], residuals: [&[f64]; 2]) -> Option<Spectra> {
+pub fn spectra(runs: &[UnbrokenRows], residuals: [&[f64]; 2]) -> Option<Spectra> {
     let period = runs.iter().max_by_key(|run| run.rows.len())?.period;
-    let same = |run: &&Run| (run.period / period - 1.0).abs() < SAME;
+    let same = |run: &&UnbrokenRows| (run.period / period - 1.0).abs() < SAME;
     let pieces =
         |r: &'_ [f64]| -> Vec<Vec<f64>> { runs.iter().filter(same).map(|run| r[run.rows.clone()].to_vec()).collect() };
     let (before, after) = (pieces(residuals[0]), pieces(residuals[1]));
@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn a_tone_is_where_it_is_with_its_power() {
         let tone: Vec<f64> = (0..8192).map(|i| 3.0 * (TAU * 12.5 * i as f64 * 0.01).sin() + 7.0).collect();
-        let whole = Run { rows: 0..8192, period: 0.01 };
+        let whole = UnbrokenRows { rows: 0..8192, period: 0.01 };
         let s = spectra(&[whole], [&tone, &vec![0.0; 8192]]).unwrap();
         let top = (0..s.hz.len()).max_by(|a, b| s.before[*a].total_cmp(&s.before[*b])).unwrap();
         assert!((s.hz[top] - 12.5).abs() < 0.1);

@@ -1,7 +1,7 @@
 //! Where in the flight a channel is predicted worst, and how wrong it is over all of it.
 
 use crate::flight::series::period;
-use crate::insight::diagnose::problem::{Problem, Row};
+use crate::insight::diagnose::problem::{Problem, ResidualRow};
 use std::ops::Range;
 
 /// Length of a stretch that is shown, s, and how many are.
@@ -11,14 +11,14 @@ const MOST: usize = 3;
 const EVERY_S: f64 = 1.0;
 
 /// Rows without a gap, with the time between them, s.
-pub struct Run {
+pub struct UnbrokenRows {
     pub rows: Range<usize>,
     pub period: f64,
 }
 
 /// A stretch of time.
 pub struct Window {
-    /// Number of the flight; none where there is only one.
+    /// ModelNumber of the flight; none where there is only one.
     pub flight: Option<usize>,
     /// On the clock that runs through all flights, s.
     pub clock: [f64; 2],
@@ -35,23 +35,23 @@ pub struct Errors {
 }
 
 /// Rows of channel `c` by runs.
-pub fn runs(problem: &Problem, c: usize) -> Vec<Run> {
+pub fn runs(problem: &Problem, c: usize) -> Vec<UnbrokenRows> {
     let rows = &problem.rows[c];
-    let time = |row: &Row| problem.records[row.flight as usize].time[row.sample as usize];
+    let time = |row: &ResidualRow| problem.records[row.flight as usize].time[row.sample as usize];
     let mut out = Vec::new();
     for flight in rows.chunk_by(|a, b| a.flight == b.flight) {
         let usual = period(&flight.iter().map(time).collect::<Vec<_>>());
-        let neighbours = |a: &Row, b: &Row| b.follows && time(b) - time(a) < 1.7 * usual;
+        let neighbours = |a: &ResidualRow, b: &ResidualRow| b.follows && time(b) - time(a) < 1.7 * usual;
         for run in flight.chunk_by(neighbours) {
-            let from = out.last().map_or(0, |last: &Run| last.rows.end);
-            out.push(Run { rows: from..from + run.len(), period: usual });
+            let from = out.last().map_or(0, |last: &UnbrokenRows| last.rows.end);
+            out.push(UnbrokenRows { rows: from..from + run.len(), period: usual });
         }
     }
     out
 }
 
 /// The worst stretches by the first of the `residuals`, that do not overlap.
-pub fn worst(problem: &Problem, c: usize, runs: &[Run], residuals: [&[f64]; 2]) -> Vec<Window> {
+pub fn worst(problem: &Problem, c: usize, runs: &[UnbrokenRows], residuals: [&[f64]; 2]) -> Vec<Window> {
     let mut scored: Vec<(f64, Range<usize>)> = Vec::new();
     for run in runs {
         let n = ((SHOWN_S / run.period).round() as usize).clamp(2, run.rows.len().max(2));

@@ -6,7 +6,7 @@ mod spectrum;
 mod time;
 
 use crate::insight::diagnose::Diagnosed;
-use crate::insight::diagnose::figures::{Channel, channels};
+use crate::insight::diagnose::figures::{ChannelFigure, channels};
 use crate::insight::diagnose::finding::Ahead;
 use crate::present::report::plot::{BLUE, ORANGE};
 use plotters::style::{Color, RGBColor, ShapeStyle};
@@ -31,7 +31,7 @@ pub struct Figure {
 
 /// A channel and its figures.
 pub struct Shown {
-    pub channel: Channel,
+    pub channel: ChannelFigure,
     pub figures: Vec<Figure>,
 }
 
@@ -55,7 +55,7 @@ impl Figures {
     }
 }
 
-fn of(channel: &Channel) -> anyhow::Result<Vec<Figure>> {
+fn of(channel: &ChannelFigure) -> anyhow::Result<Vec<Figure>> {
     let name = |kind: &str| format!("{}-{kind}", channel.name.replace(' ', "-"));
     let mut out = Vec::new();
     if !channel.windows.is_empty() {

@@ -69,7 +69,7 @@ fn worth(f: &Finding) -> String {
 }
 
 fn impact(f: &Finding) -> String {
-    let sensor = effects::card(f.effect).is_some_and(|card| card.kind == effects::Kind::Sensor);
+    let sensor = effects::card(f.effect).is_some_and(|card| card.kind == effects::EffectKind::Sensor);
     let size = digits(f.impact, f.impact, 2);
     if sensor {
         format!("Within a second it adds up to an error of {size} m/s.")

@@ -1,8 +1,8 @@
 //! The error along the signal that explains most of it.
 
 use super::{AFTER, BEFORE};
-use crate::insight::diagnose::figures::Channel;
-use crate::insight::diagnose::figures::profile::{Level, Profile};
+use crate::insight::diagnose::figures::ChannelFigure;
+use crate::insight::diagnose::figures::profile::{Profile, ProfileLevel};
 use crate::present::report::drawing;
 use crate::present::report::page::unit;
 use crate::present::report::plot::{self, line, mesh, range};
@@ -12,8 +12,8 @@ use plotters::prelude::*;
 const HALF: f64 = 1.96;
 
 /// Means with error bars, before and after.
-pub fn draw(channel: &Channel, profile: &Profile) -> anyhow::Result<String> {
-    type Of = fn(&Level) -> [f64; 2];
+pub fn draw(channel: &ChannelFigure, profile: &Profile) -> anyhow::Result<String> {
+    type Of = fn(&ProfileLevel) -> [f64; 2];
     let sides: [(Of, RGBColor); 2] = [(|l| l.before, BEFORE), (|l| l.after, AFTER)];
     plot::keyed(320, &super::lines(), |root| {
         let x = range(profile.levels.iter().map(|l| l.signal));

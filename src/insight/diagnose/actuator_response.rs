@@ -1,22 +1,22 @@
 //! What arrives of the commands, and what body rates it makes.
 
 use super::model::Model;
-use super::record::Record;
+use super::record::FlightRecord;
 use crate::model::dynamics::Parameters;
 use crate::model::dynamics::extended;
 
 /// The filtered commands at every sample.
-pub struct Responses {
+pub struct ActuatorResponse {
     pub command: Vec<[f64; 4]>,
     pub lag: Vec<f64>,
-    pub asked: Vec<([f64; 4], [f64; 3])>,
+    pub setpoint: Vec<([f64; 4], [f64; 3])>,
 }
 
 /// Body rates: those that the filtered commands make, or the gyro's where the log has no commands of them.
 #[inline(always)]
-pub fn spin(p: &Parameters<f64>, record: &Record, command: &[[f64; 4]]) -> Vec<[f64; 3]> {
+pub fn body_rates(p: &Parameters<f64>, record: &FlightRecord, command: &[[f64; 4]]) -> Vec<[f64; 3]> {
     if record.commanded[0] {
-        command.iter().map(|c| extended::spin(p, *c)).collect()
+        command.iter().map(|c| extended::body_rates(p, *c)).collect()
     } else {
         (0..command.len()).map(|i| std::array::from_fn(|k| record.imu[k][i])).collect()
     }
@@ -24,18 +24,27 @@ pub fn spin(p: &Parameters<f64>, record: &Record, command: &[[f64; 4]]) -> Vec<[
 
 /// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next, and what arrives is integrated exactly.
 #[inline(always)]
-pub fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], offset: f64) -> Responses {
-    let late = extended::lateness(p);
+pub fn actuator_response(
+    p: &Parameters<f64>,
+    record: &FlightRecord,
+    model: &Model,
+    x: &[f64],
+    offset: f64,
+) -> ActuatorResponse {
+    let late = extended::command_delays(p);
     // Roll and pitch, yaw, and thrust arrive each at their time.
     let late = [late[0] + offset, late[2] + offset, late[3]];
     let stretch = 1.0 / (1.0 + model.of(x, "clock_skew", "skew"));
     let lost = model.of(x, "command_dropout", "probability");
     let n = record.time.len();
-    let mut out =
-        Responses { command: Vec::with_capacity(n), lag: Vec::with_capacity(n), asked: Vec::with_capacity(n) };
+    let mut out = ActuatorResponse {
+        command: Vec::with_capacity(n),
+        lag: Vec::with_capacity(n),
+        setpoint: Vec::with_capacity(n),
+    };
     let none = [f64::NAN; 4];
     let Some((first, begin)) = record.sent.first().copied() else {
-        return Responses { command: vec![none; n], lag: vec![0.0; n], asked: vec![(none, [0.0; 3]); n] };
+        return ActuatorResponse { command: vec![none; n], lag: vec![0.0; n], setpoint: vec![(none, [0.0; 3]); n] };
     };
     // What arrives on average where commands get lost.
     let arrives = |i: usize, k: usize| {
@@ -50,7 +59,7 @@ pub fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], o
         if t < first {
             out.command.push(none);
             out.lag.push(f64::NAN);
-            out.asked.push((none, [0.0; 3]));
+            out.setpoint.push((none, [0.0; 3]));
             continue;
         }
         let voltage = supplied(p, record, i);
@@ -65,7 +74,7 @@ pub fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], o
             };
             let until = next.min(t);
             if until > now {
-                (command, slope) = extended::respond(p, command, slope, sent, voltage, until - now);
+                (command, slope) = extended::actuator_response(p, command, slope, sent, voltage, until - now);
                 now = until;
             }
             if next > t {
@@ -76,13 +85,13 @@ pub fn respond(p: &Parameters<f64>, record: &Record, model: &Model, x: &[f64], o
         }
         out.command.push(command);
         out.lag.push((0..3).map(|k| (sent[k] - command[k]).abs()).sum());
-        out.asked.push((sent, slope));
+        out.setpoint.push((sent, slope));
     }
     out
 }
 
 /// The voltage that a sample's response depends on, V.
 #[inline(always)]
-pub fn supplied(p: &Parameters<f64>, record: &Record, i: usize) -> f64 {
+pub fn supplied(p: &Parameters<f64>, record: &FlightRecord, i: usize) -> f64 {
     if record.voltage[i].is_finite() { record.voltage[i] } else { p.beyond.full_v }
 }

@@ -1,11 +1,11 @@
 //! Directions in which the prediction could change, and by how much each changes it.
 
-use super::fit::Point;
+use super::fit::FitPoint;
 use super::model::{BEGIN, DISCHARGE, Stage, cards, span};
-use super::problem::{Problem, Values};
+use super::problem::{ChannelValues, Problem};
 use super::trial::rivals;
 use super::whiten::Whitener;
-use crate::model::effects::{Card, Kind};
+use crate::model::effects::{Card, EffectKind};
 use rayon::prelude::*;
 
 /// A way to begin with an effect: numbers and their values.
@@ -16,13 +16,13 @@ pub struct Direction {
 }
 
 /// A direction with the change of the prediction that it makes, plain and whitened.
-pub struct Column {
+pub struct Candidate {
     pub direction: Direction,
-    pub change: Values,
-    pub white: Values,
+    pub change: ChannelValues,
+    pub white: ChannelValues,
 }
 
-impl Column {
+impl Candidate {
     pub fn card(&self) -> &'static Card {
         self.direction.card
     }
@@ -63,7 +63,7 @@ pub fn directions(card: &'static Card) -> Vec<Direction> {
         return numbers.iter().enumerate().map(|(i, &k)| Direction { card, start: vec![(k, sizes(i)[0])] }).collect();
     }
     let signs: &[f64] = if card.parameters[0].low < 0.0 { &[1.0, -1.0] } else { &[1.0] };
-    let shifts = card.kind == Kind::Timing || card.id == "propwash" || card.kind == Kind::Sensor;
+    let shifts = card.kind == EffectKind::Timing || card.id == "propwash" || card.kind == EffectKind::Sensor;
     let wanted = if shifts { 4 - signs.len() } else { 1 };
     let sizes = sizes(0).into_iter().take(wanted);
     sizes
@@ -73,7 +73,7 @@ pub fn directions(card: &'static Card) -> Vec<Direction> {
 }
 
 /// Candidates: effects whose mean can be seen, that the base does not already hold.
-pub fn candidates(problem: &Problem) -> Vec<&'static Card> {
+pub fn causes(problem: &Problem) -> Vec<&'static Card> {
     let in_base = |card: &Card| span(card).any(|k| problem.model.base[k] != 0.0);
     let bias = |card: &Card| matches!(card.id, "gyro_bias" | "accel_bias");
     let one_clock = problem.records.iter().all(|r| r.one_clock);
@@ -84,7 +84,7 @@ pub fn candidates(problem: &Problem) -> Vec<&'static Card> {
 }
 
 /// The columns of all directions; those that change nothing are left out.
-pub fn columns(problem: &Problem, whitener: &Whitener, point: &Point, cards: &[&'static Card]) -> Vec<Column> {
+pub fn candidates(problem: &Problem, whitener: &Whitener, point: &FitPoint, cards: &[&'static Card]) -> Vec<Candidate> {
     let mut all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
     if let Some(card) = cards.iter().find(|card| card.id == "clock_skew")
         && let Some(skew) = super::skew::estimate(problem, &point.state, &point.residual)
@@ -98,27 +98,27 @@ pub fn columns(problem: &Problem, whitener: &Whitener, point: &Point, cards: &[&
         let change = problem.secant(&point.state, &point.x, &d.start, 1.0);
         let finite = change.iter().flatten().all(|x| x.is_finite());
         let white = whitener.apply(&change, &problem.rows);
-        (finite && !change.iter().all(Vec::is_empty)).then_some(Column { direction: d, change, white })
+        (finite && !change.iter().all(Vec::is_empty)).then_some(Candidate { direction: d, change, white })
     };
     all.into_par_iter().filter_map(one).collect()
 }
 
-/// The columns after the last of `held` was added: made anew where it moved in time or in voltage what they change, and of the causes that were tied with
+/// The columns after the last of `held` was added: recomputed where it moved in time or in voltage what they change, and of the causes that were tied with
 /// it; else as they were.
 pub fn renewed(
     problem: &Problem,
     whitener: &Whitener,
-    point: &Point,
+    point: &FitPoint,
     held: &[&'static Card],
     tied: &[(&'static Card, f64)],
-    mut found: Vec<Column>,
-) -> Vec<Column> {
+    mut found: Vec<Candidate>,
+) -> Vec<Candidate> {
     let Some(last) = held.last() else { return found };
     found.retain(|c| c.card().id != last.id);
     let of = |card: &Card| span(card).map(|k| &problem.model.numbers[k]);
     let early = of(last).any(|n| n.stage <= Stage::Battery);
     let (rates, forces) = (of(last).any(|n| n.rates), of(last).any(|n| n.forces));
-    let stale = |c: &Column| {
+    let stale = |c: &Candidate| {
         early && of(c.card()).any(|n| rates && n.rates || forces && n.forces)
             || tied.iter().any(|(card, _)| card.id == c.card().id)
             || rivals(last, c.card())

@@ -2,7 +2,7 @@
 //! remembers; but half a period later it has the other sign, and after a whole one its own again, which gusts and wrong drag never have.
 
 use super::predict::FORCE;
-use super::problem::{Problem, Row, Values};
+use super::problem::{ChannelValues, Problem, ResidualRow};
 use super::record::BIN_S;
 use std::ops::RangeInclusive;
 
@@ -30,23 +30,23 @@ pub fn is_swing(along: &str) -> bool {
 
 /// Something that swings along a body axis: how much of the residual's power it is, and its name.
 #[derive(Clone, Copy, Debug)]
-pub struct Swing {
+pub struct Oscillation {
     pub axis: usize,
     pub share: f64,
     pub name: &'static str,
 }
 
 /// What swings in the residual of the specific force.
-pub fn find(problem: &Problem, residual: &Values) -> Vec<Swing> {
+pub fn find(problem: &Problem, residual: &ChannelValues) -> Vec<Oscillation> {
     let one = |axis: usize| {
         let (share, name) = swing(&residual[FORCE + axis], &problem.rows[FORCE + axis], problem.blocks)?;
-        Some(Swing { axis, share, name })
+        Some(Oscillation { axis, share, name })
     };
     (0..3).filter_map(one).collect()
 }
 
 /// Share of the residual's power that swings, and what the swing is called.
-fn swing(residual: &[f64], rows: &[Row], blocks: usize) -> Option<(f64, &'static str)> {
+fn swing(residual: &[f64], rows: &[ResidualRow], blocks: usize) -> Option<(f64, &'static str)> {
     let cap = 6.0 * crate::base::stats::robust_sd(residual);
     let y: Vec<f64> = residual.iter().map(|r| r.clamp(-cap, cap)).collect();
     // Products with what was so many bins before, by stretch of time.
@@ -80,7 +80,7 @@ mod tests {
     use crate::base::rng::{Philox, Stream};
 
     /// A residual that remembers: white noise through a filter of second order, with more white noise on top.
-    fn remembered(first: f64, second: f64, share: f64) -> (Vec<f64>, Vec<Row>) {
+    fn remembered(first: f64, second: f64, share: f64) -> (Vec<f64>, Vec<ResidualRow>) {
         let mut noise = Philox::new(7).sequence(Stream::Pilot, 0, 0);
         let (mut before, mut now) = (0.0, 0.0);
         let mut white = move || noise.uniform([-1.0, 1.0]);
@@ -89,7 +89,7 @@ mod tests {
             share * now + white()
         };
         let y: Vec<f64> = (0..30_000).map(one).collect();
-        let row = |i: u32| Row { flight: 0, index: i, block: i / 200, sample: i, follows: i > 0 };
+        let row = |i: u32| ResidualRow { flight: 0, index: i, block: i / 200, sample: i, follows: i > 0 };
         (y, (0..30_000).map(row).collect())
     }
 
