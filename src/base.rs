@@ -2,6 +2,8 @@
 
 pub mod check;
 pub mod document;
+pub mod encode;
+pub mod error;
 pub mod fsio;
 pub mod lane;
 pub mod peak;

@@ -21,6 +21,7 @@ mod track;
 mod train;
 
 use crate::base::check::BadInput;
+use crate::base::error::Error;
 use clap::{Parser, Subcommand};
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
@@ -61,10 +62,12 @@ Exit codes:
   5    `--fail-on-effect` found an effect
   130  stopped by Ctrl-C";
 
-/// How a command ended, where it did not fail.
+/// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
     Done,
+    Failed,
+    Refused,
     Damaged,
     NotMet,
     Effect,
@@ -75,6 +78,8 @@ impl Outcome {
     fn code(self) -> u8 {
         match self {
             Outcome::Done => 0,
+            Outcome::Failed => 1,
+            Outcome::Refused => 2,
             Outcome::Damaged => 3,
             Outcome::NotMet => 4,
             Outcome::Effect => 5,
@@ -102,10 +107,21 @@ pub fn main() -> ExitCode {
         Command::Bench(args) => bench::run(&args),
     };
     let code = result.map(Outcome::code).unwrap_or_else(|error| {
-        tell(&format!("error: {error:#}"));
-        if error.is::<BadInput>() { 2 } else { 1 }
+        let outcome = ended(&error);
+        tell(&if outcome == Outcome::Interrupted { error.to_string() } else { format!("error: {error:#}") });
+        outcome.code()
     });
     ExitCode::from(code)
+}
+
+/// How a command ended that failed.
+fn ended(error: &anyhow::Error) -> Outcome {
+    match error.downcast_ref::<Error>() {
+        Some(Error::Interrupted(_)) => Outcome::Interrupted,
+        Some(Error::BadInput(_)) => Outcome::Refused,
+        _ if error.is::<BadInput>() => Outcome::Refused,
+        _ => Outcome::Failed,
+    }
 }
 
 /// Prints a result. A reader that has gone away is no error: it has what it wanted.

@@ -97,7 +97,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
 
     let results = folder.write_tables()?;
     if let Some(json) = json {
-        json.write((tables::json(&results)? + "\n").as_bytes())?;
+        json.write(tables::json(&results)?.as_bytes())?;
     }
     if results.finished() > 0 {
         super::print(&text::results(&results))?;

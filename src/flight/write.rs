@@ -6,9 +6,9 @@ mod topic;
 
 use super::mcap::vehicle;
 use super::{Log, Stream, VehicleRecord};
+use crate::base::error::{Error, Result};
 use ::mcap::records::{MessageHeader, Metadata};
-use ::mcap::{Compression, WriteOptions, Writer};
-use anyhow::{Context, Result};
+use ::mcap::{Compression, McapError, WriteOptions, Writer};
 use cdr::Cdr;
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -26,10 +26,11 @@ pub fn mcap(log: &Log) -> Result<Vec<u8>> {
         .library(concat!("racer/", env!("CARGO_PKG_VERSION")))
         .compression(Some(Compression::Zstd))
         .compression_threads(0)
-        .create(Cursor::new(Vec::new()))?;
+        .create(Cursor::new(Vec::new()))
+        .map_err(failed)?;
     // First, so that a file that breaks off still has it.
     if log.vehicle != VehicleRecord::default() {
-        file.write_metadata(&metadata(&log.vehicle))?;
+        file.write_metadata(&metadata(&log.vehicle)).map_err(failed)?;
     }
     let mut queues = [
         queue(&mut file, log, topic::SETPOINT, message::BODY, &log.setpoint, message::attitude_target)?,
@@ -42,8 +43,13 @@ pub fn mcap(log: &Log) -> Result<Vec<u8>> {
     {
         queue.write(&mut file)?;
     }
-    file.finish()?;
+    file.finish().map_err(failed)?;
     Ok(file.into_inner().into_inner())
+}
+
+/// The error of the library that writes MCAP.
+fn failed(error: McapError) -> Error {
+    Error::encode("the log")(error)
 }
 
 fn metadata(record: &VehicleRecord) -> Metadata {
@@ -76,12 +82,15 @@ fn queue<'l, const N: usize>(
 ) -> Result<Queue<'l>> {
     let times_ns = stream.time_s.iter().map(|&time_s| stamp_ns(log.start_ns, time_s));
     let times_ns = times_ns.collect::<Option<Vec<_>>>();
-    let times_ns = times_ns.with_context(|| format!("{} has times that ROS cannot represent", topic.name))?;
+    let times_ns = times_ns.ok_or_else(|| {
+        let why = format!("{} has times that ROS cannot represent", topic.name);
+        Error::Encode { what: "the log", why }
+    })?;
     let channel = if stream.is_empty() {
         0
     } else {
-        let schema = file.add_schema(topic.message, "ros2msg", topic.schema().as_bytes())?;
-        file.add_channel(schema, topic.name, "cdr", &BTreeMap::new())?
+        let schema = file.add_schema(topic.message, "ros2msg", topic.schema().as_bytes()).map_err(failed)?;
+        file.add_channel(schema, topic.name, "cdr", &BTreeMap::new()).map_err(failed)?
     };
     Ok(Queue { channel, times_ns, written: 0, message: Box::new(move |cdr, i| message(cdr, stream.rows[i])), frame })
 }
@@ -105,7 +114,7 @@ impl Queue<'_> {
         (self.message)(&mut cdr, self.written);
         let sequence = self.written as u32;
         let header = MessageHeader { channel_id: self.channel, sequence, log_time: time_ns, publish_time: time_ns };
-        file.write_to_known_channel(&header, cdr.bytes())?;
+        file.write_to_known_channel(&header, cdr.bytes()).map_err(failed)?;
         self.written += 1;
         Ok(())
     }

@@ -16,7 +16,9 @@ pub mod training;
 
 pub use page::digits;
 
-/// The error of a drawing, as text.
-pub fn drawing(error: impl std::fmt::Display) -> anyhow::Error {
-    anyhow::anyhow!("a figure could not be drawn: {error}")
+use crate::base::error::Error;
+
+/// The error of a drawing.
+pub fn drawing(error: impl std::fmt::Display) -> Error {
+    Error::Draw(error.to_string())
 }

@@ -22,6 +22,7 @@ pub mod tensorboard;
 pub use find::{Found, find};
 
 use crate::base::check::BadInput;
+use crate::base::error::{Error, Result};
 use crate::base::fsio;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -57,10 +58,9 @@ impl Run {
     }
 
     /// Writes a new file of the run. Fails if it exists.
-    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> anyhow::Result<PathBuf> {
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
         let path = self.folder.join(name);
-        fsio::write_new(&path, bytes.as_ref())
-            .map_err(|error| anyhow::anyhow!("{} could not be written: {error}", path.display()))?;
+        fsio::write_new(&path, bytes.as_ref()).map_err(Error::write(&path))?;
         Ok(path)
     }
 }

@@ -3,6 +3,7 @@
 mod self_test;
 
 use crate::base::check::{BadInput, Check, Invalid};
+use crate::base::error::Error;
 use crate::base::fsio;
 use crate::learn::nn::mlp::Shape;
 use crate::learn::nn::{HIDDEN, Layer, Network};
@@ -83,12 +84,12 @@ fn observation(vehicle: &Vehicle) -> serde_json::Value {
 
 impl Snapshot {
     /// Writes a new file. Weights are `[inputs][outputs]`; a layer is y = W' x + b, hidden ones followed by tanh.
-    pub fn write(&self, path: &Path) -> anyhow::Result<()> {
-        Ok(fsio::write_new(path, &self.to_bytes()?)?)
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        fsio::write_new(path, &self.to_bytes()?).map_err(Error::write(path))
     }
 
     /// The file's content; the same policy always gives the same bytes.
-    pub fn to_bytes(&self) -> anyhow::Result<Vec<u8>> {
+    pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
         let (observations, actions) = self_test::vectors(&self.network);
         let mut tensors: Vec<(String, Vec<usize>, Vec<u8>)> = tensors(&self.network)
             .into_iter()
@@ -101,8 +102,9 @@ impl Snapshot {
             .iter()
             .map(|(name, shape, bytes)| Ok((name, TensorView::new(Dtype::F32, shape.clone(), bytes)?)))
             .collect::<Result<_, safetensors::SafeTensorError>>();
-        let metadata = serde_json::to_string(&Metadata::new(&self.about))?;
-        Ok(serialize(views?, Some(HashMap::from([(METADATA.into(), metadata)])))?)
+        let metadata = serde_json::to_string(&Metadata::new(&self.about)).map_err(Error::encode("the policy"))?;
+        let file = views.and_then(|views| serialize(views, Some(HashMap::from([(METADATA.into(), metadata)]))));
+        file.map_err(Error::encode("the policy"))
     }
 
     /// Reads a file, and makes sure that the network still answers as it did when it was written.

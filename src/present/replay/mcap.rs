@@ -3,10 +3,10 @@
 use super::foxglove::{self, body, stamp};
 use super::schema::schema;
 use super::{Frame, Replay};
+use crate::base::error::{Error, Result};
 use crate::race::env::observe::LAYOUT;
 use ::mcap::records::MessageHeader;
-use ::mcap::{Compression, WriteOptions, Writer};
-use anyhow::{Context, Result};
+use ::mcap::{Compression, McapResult, WriteOptions, Writer};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -40,7 +40,7 @@ pub fn mcap(replay: &Replay) -> Result<Vec<u8>> {
     }
     // Stable: what was written first at a time stays first.
     messages.sort_by_key(|message| message.ns);
-    write(&messages)
+    write(&messages).map_err(Error::encode("the replay"))
 }
 
 struct Message {
@@ -58,7 +58,8 @@ impl Message {
 
 fn at(replay: &Replay, time_s: f64) -> Result<u64> {
     let ns = i128::from(replay.start_ns) + (time_s * 1e9).round() as i128;
-    u64::try_from(ns).ok().filter(|_| time_s.is_finite()).context("the flight has times that MCAP cannot represent")
+    let ns = u64::try_from(ns).ok().filter(|_| time_s.is_finite());
+    ns.ok_or_else(|| Error::encode("the replay")("the flight has times that MCAP cannot represent"))
 }
 
 /// What is there from the first moment to the last.
@@ -137,7 +138,7 @@ fn remarks(replay: &Replay, i: usize) -> Result<Vec<Message>> {
     messages.collect()
 }
 
-fn write(messages: &[Message]) -> Result<Vec<u8>> {
+fn write(messages: &[Message]) -> McapResult<Vec<u8>> {
     let mut file: Writer<Cursor<Vec<u8>>> = WriteOptions::new()
         .library(concat!("racer/", env!("CARGO_PKG_VERSION")))
         .compression(Some(Compression::Zstd))

@@ -2,6 +2,7 @@
 
 use super::drawing;
 use super::plot::{self, BLUE, ORANGE, TEXT};
+use crate::base::error::Result;
 use crate::race::eval::fly::{JUDGED_STEPS, Moment, SATURATED};
 use plotters::prelude::*;
 
@@ -19,7 +20,7 @@ const SECONDS: f64 = JUDGED_STEPS as f64 * crate::race::env::DT;
 
 /// An SVG: roll, pitch and yaw rate and thrust, each from -1 to 1, of the `flights` (in the paper one with weak and one with strong
 /// regularisation); the limits of saturation are marked.
-pub fn svg(flights: &[Commands]) -> anyhow::Result<String> {
+pub fn svg(flights: &[Commands]) -> Result<String> {
     const NAMES: [&str; 4] = ["roll rate", "pitch rate", "yaw rate", "thrust"];
     plot::svg(HEIGHT, |root| {
         let columns = root.split_evenly((1, flights.len()));

@@ -1,5 +1,7 @@
 //! The figures and the traced flight of a run folder.
 
+use crate::base::encode;
+use crate::base::error::Result;
 use crate::model::track::Track;
 use crate::present::report::{lap, training};
 use crate::present::run::Run;
@@ -14,10 +16,8 @@ pub const LAP: &str = "lap.svg";
 pub const TRAINING: &str = "training.svg";
 
 /// Writes `lap.csv` and `lap.svg`.
-pub fn write_lap(run: &Run, track: &Track, trace: &[Moment], report: &Report) -> anyhow::Result<()> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    trace.iter().try_for_each(|moment| csv.serialize(moment))?;
-    run.write(TRACE, csv.into_inner()?)?;
+pub fn write_lap(run: &Run, track: &Track, trace: &[Moment], report: &Report) -> Result<()> {
+    run.write(TRACE, encode::csv("the flown lap", |csv| trace.iter().try_for_each(|moment| csv.serialize(moment)))?)?;
     run.write(LAP, lap::svg(track, trace, &lap_title(track, report))?)?;
     Ok(())
 }
@@ -34,12 +34,7 @@ pub fn lap_title(track: &Track, report: &Report) -> String {
 }
 
 /// The learning curves: of each row minutes and gates an episode, of each snapshot its evaluation; `chosen` was kept.
-pub fn training(
-    title: &str,
-    rows: &[[Option<f64>; 2]],
-    snapshots: &[Evaluated],
-    chosen: &str,
-) -> anyhow::Result<String> {
+pub fn training(title: &str, rows: &[[Option<f64>; 2]], snapshots: &[Evaluated], chosen: &str) -> Result<String> {
     let minutes = |seconds: f64| seconds / 60.0;
     let point =
         |row: &[Option<f64>; 2]| training::Point { minutes: minutes(row[0].unwrap_or_default()), gates: row[1] };

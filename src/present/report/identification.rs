@@ -2,6 +2,7 @@
 
 mod figures;
 
+use crate::base::error::Result;
 use crate::insight::identify::AXES;
 use crate::insight::identify::document::CheckedLog;
 use crate::insight::identify::estimate::Estimate;
@@ -10,8 +11,8 @@ use crate::present::report::page::{self, number};
 use maud::{Markup, PreEscaped, html};
 
 /// The page as HTML.
-pub fn page(found: &Identification, logs: &[CheckedLog]) -> anyhow::Result<String> {
-    let figures = found.channels.iter().map(figures::channel).collect::<anyhow::Result<Vec<_>>>()?;
+pub fn page(found: &Identification, logs: &[CheckedLog]) -> Result<String> {
+    let figures = found.channels.iter().map(figures::channel).collect::<Result<Vec<_>>>()?;
     let body = html! {
         h1 { "Vehicle " (found.vehicle.name) }
         p { (format!("Identified by racer {} from {:.0} s of usable flight.", env!("CARGO_PKG_VERSION"), found.usable_s)) }

@@ -3,6 +3,7 @@
 use super::drawing;
 use super::map::{self, Place};
 use super::plot::{self, BLUE, ORANGE};
+use crate::base::error::Result;
 use crate::model::track::Track;
 use crate::race::env::DT;
 use crate::race::eval::fly::Moment;
@@ -14,14 +15,14 @@ const HEIGHT: u32 = 900;
 const SCALE: u32 = 110;
 
 /// An SVG of `trace` over the gates of `track`.
-pub fn svg(track: &Track, trace: &[Moment], title: &str) -> anyhow::Result<String> {
+pub fn svg(track: &Track, trace: &[Moment], title: &str) -> Result<String> {
     let speed = |m: &Moment| f64::from(m.vx.powi(2) + m.vy.powi(2) + m.vz.powi(2)).sqrt();
     let places = trace.iter().map(|m| ((f64::from(m.x), f64::from(m.y)), speed(m))).collect();
     draw(track, places, title)
 }
 
 /// An SVG of a reference lap.
-pub fn reference(track: &Track, lap: &Reference, title: &str) -> anyhow::Result<String> {
+pub fn reference(track: &Track, lap: &Reference, title: &str) -> Result<String> {
     let closed = lap.moments.iter().chain(lap.moments.first());
     draw(track, closed.map(|m| ((m.position.x, m.position.y), m.velocity.norm())).collect(), title)
 }
@@ -30,7 +31,7 @@ pub fn reference(track: &Track, lap: &Reference, title: &str) -> anyhow::Result<
 const SPEEDS: u32 = 260;
 
 /// An SVG of two flights over each other, each with a name and its positions, m, and velocities, m/s, every 10 ms; below, their speeds.
-pub fn beside(track: &Track, flights: &[(&str, &[[f64; 6]]); 2], title: &str) -> anyhow::Result<String> {
+pub fn beside(track: &Track, flights: &[(&str, &[[f64; 6]]); 2], title: &str) -> Result<String> {
     let styles = [BLUE.stroke_width(4), ORANGE.stroke_width(2)];
     let keys: Vec<_> = flights.iter().zip(styles).map(|((name, _), style)| (*name, style)).collect();
     plot::keyed(HEIGHT + SPEEDS, &keys, |root| {
@@ -55,7 +56,7 @@ pub fn beside(track: &Track, flights: &[(&str, &[[f64; 6]]); 2], title: &str) ->
     })
 }
 
-fn draw(track: &Track, places: Vec<(Place, f64)>, title: &str) -> anyhow::Result<String> {
+fn draw(track: &Track, places: Vec<(Place, f64)>, title: &str) -> Result<String> {
     plot::svg(HEIGHT, |root| {
         let (area, scale) = root.split_horizontally(plot::WIDTH - SCALE);
         let top = places.iter().map(|(_, speed)| *speed).fold(1.0, f64::max);

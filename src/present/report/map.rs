@@ -2,6 +2,7 @@
 
 use super::drawing;
 use super::plot::{Chart, TEXT};
+use crate::base::error::Result;
 use crate::model::track::{GateKind, Track};
 use crate::present::colour::viridis;
 use plotters::coord::Shift;
@@ -17,7 +18,7 @@ pub fn chart<'a, 'b>(
     track: &Track,
     places: impl Iterator<Item = Place>,
     title: &str,
-) -> anyhow::Result<Chart<'a, 'b>> {
+) -> Result<Chart<'a, 'b>> {
     let gates = track.gates.iter().map(|g| (g.position_m[0], g.position_m[1]));
     let start = (track.start.position_m[0], track.start.position_m[1]);
     let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
@@ -56,13 +57,13 @@ pub fn chart<'a, 'b>(
 }
 
 /// A line through `places`.
-pub fn path(chart: &mut Chart, places: impl IntoIterator<Item = Place>, style: ShapeStyle) -> anyhow::Result<()> {
+pub fn path(chart: &mut Chart, places: impl IntoIterator<Item = Place>, style: ShapeStyle) -> Result<()> {
     chart.draw_series([PathElement::new(places.into_iter().collect::<Vec<_>>(), style)]).map_err(drawing)?;
     Ok(())
 }
 
 /// The reset spline, dotted.
-pub fn spline(chart: &mut Chart, track: &Track) -> anyhow::Result<()> {
+pub fn spline(chart: &mut Chart, track: &Track) -> Result<()> {
     const DOTS: usize = 400;
     let dots = track.reset_spline().samples(DOTS).into_iter();
     let dots = dots.map(|s| Circle::new((s.position.x, s.position.y), 1, BLACK.mix(0.45).filled()));
@@ -71,7 +72,7 @@ pub fn spline(chart: &mut Chart, track: &Track) -> anyhow::Result<()> {
 }
 
 /// A line through `places` coloured by the speed (m/s) beside each, of at most `top`.
-pub fn coloured(chart: &mut Chart, places: &[(Place, f64)], top: f64) -> anyhow::Result<()> {
+pub fn coloured(chart: &mut Chart, places: &[(Place, f64)], top: f64) -> Result<()> {
     let pieces = places
         .windows(2)
         .map(|pair| PathElement::new([pair[0].0, pair[1].0], viridis(pair[0].1 / top).stroke_width(4)));
@@ -80,7 +81,7 @@ pub fn coloured(chart: &mut Chart, places: &[(Place, f64)], top: f64) -> anyhow:
 }
 
 /// Gates with their names and directions of crossing, and the start.
-pub fn gates(chart: &mut Chart, track: &Track) -> anyhow::Result<()> {
+pub fn gates(chart: &mut Chart, track: &Track) -> Result<()> {
     for (i, gate) in track.gates.iter().enumerate() {
         let (p, rotation) = (gate.position(), gate.rotation());
         let half = 0.5 * gate.outer_m.unwrap_or(2.0 * gate.radius_m);
@@ -113,7 +114,7 @@ fn centred() -> TextStyle<'static> {
 }
 
 /// A scale of speeds up to `top`, m/s.
-pub fn scale(area: &DrawingArea<SVGBackend, Shift>, top: f64) -> anyhow::Result<()> {
+pub fn scale(area: &DrawingArea<SVGBackend, Shift>, top: f64) -> Result<()> {
     let mut chart = ChartBuilder::on(area)
         .margin_top(50)
         .margin_bottom(60)

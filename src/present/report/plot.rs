@@ -1,6 +1,7 @@
 //! What figures share: colours, axes, legends.
 
 use super::drawing;
+use crate::base::error::Result;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
@@ -19,7 +20,7 @@ pub type Linear = plotters::coord::types::RangedCoordf64;
 pub type Chart<'a, 'b> = On<'a, 'b, Linear, Linear>;
 
 /// An SVG of this height that `draw` draws.
-pub fn svg(height: u32, draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<String> {
+pub fn svg(height: u32, draw: impl FnOnce(&Area) -> Result<()>) -> Result<String> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, (WIDTH, height)).into_drawing_area();
@@ -38,7 +39,7 @@ pub fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
 }
 
 /// Axes with a light grid.
-pub fn mesh<X, Y>(chart: &mut On<X, Y>, x: &str, y: &str, labels: [usize; 2]) -> anyhow::Result<()>
+pub fn mesh<X, Y>(chart: &mut On<X, Y>, x: &str, y: &str, labels: [usize; 2]) -> Result<()>
 where
     X: Ranged<ValueType = f64> + ValueFormatter<f64>,
     Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
@@ -57,7 +58,7 @@ where
 }
 
 /// The names of all series.
-pub fn legend<'a, 'b: 'a, X, Y>(chart: &mut On<'a, 'b, X, Y>, position: SeriesLabelPosition) -> anyhow::Result<()>
+pub fn legend<'a, 'b: 'a, X, Y>(chart: &mut On<'a, 'b, X, Y>, position: SeriesLabelPosition) -> Result<()>
 where
     X: Ranged<ValueType = f64>,
     Y: Ranged<ValueType = f64>,
@@ -72,11 +73,7 @@ where
 }
 
 /// A line.
-pub fn line<X, Y>(
-    chart: &mut On<X, Y>,
-    points: impl IntoIterator<Item = (f64, f64)>,
-    style: ShapeStyle,
-) -> anyhow::Result<()>
+pub fn line<X, Y>(chart: &mut On<X, Y>, points: impl IntoIterator<Item = (f64, f64)>, style: ShapeStyle) -> Result<()>
 where
     X: Ranged<ValueType = f64>,
     Y: Ranged<ValueType = f64>,
@@ -86,11 +83,7 @@ where
 }
 
 /// [`svg`] with the names of all lines above what `draw` draws, where they hide nothing.
-pub fn keyed(
-    height: u32,
-    lines: &[(&str, ShapeStyle)],
-    draw: impl FnOnce(&Area) -> anyhow::Result<()>,
-) -> anyhow::Result<String> {
+pub fn keyed(height: u32, lines: &[(&str, ShapeStyle)], draw: impl FnOnce(&Area) -> Result<()>) -> Result<String> {
     const KEY: u32 = 24;
     svg(height + KEY, |root| {
         let (names, rest) = root.split_vertically(KEY);

@@ -3,6 +3,7 @@
 use super::drawing;
 use super::map;
 use super::plot::{self, BLUE, ORANGE, TEXT};
+use crate::base::error::Result;
 use crate::model::track::Track;
 use crate::race::eval::spread::Spread;
 use nalgebra::Vector3;
@@ -15,7 +16,7 @@ const PROFILE: u32 = 330;
 const THINNED: usize = 3;
 
 /// An SVG: from above, and below it the distance from the nominal flight along it.
-pub fn svg(track: &Track, spread: &Spread, title: &str) -> anyhow::Result<String> {
+pub fn svg(track: &Track, spread: &Spread, title: &str) -> Result<String> {
     let count = format!("{} randomised vehicles", spread.randomised.len());
     let keys = [
         (count.as_str(), BLUE.mix(0.5).stroke_width(2)),
@@ -37,7 +38,7 @@ pub fn svg(track: &Track, spread: &Spread, title: &str) -> anyhow::Result<String
     })
 }
 
-fn draw_profile(area: &plot::Area, track: &Track, spread: &Spread) -> anyhow::Result<()> {
+fn draw_profile(area: &plot::Area, track: &Track, spread: &Spread) -> Result<()> {
     let profile = &spread.profile;
     let length = profile.last().map_or(1.0, |s| s.at_m);
     let most = profile.iter().map(|s| s.p90_m).fold(0.1, f64::max);

@@ -8,6 +8,7 @@ mod ranked;
 mod tables;
 
 use super::page;
+use crate::base::error::Result;
 use crate::present::study::curves::Curves;
 use crate::present::study::results::Results;
 use maud::{PreEscaped, html};
@@ -24,7 +25,7 @@ pub struct Figure {
 }
 
 /// All figures of a study with a finished run.
-pub fn figures(results: &Results, curves: &Curves) -> anyhow::Result<Vec<Figure>> {
+pub fn figures(results: &Results, curves: &Curves) -> Result<Vec<Figure>> {
     let mut figures = vec![ranked::figure(results)?];
     figures.extend(effects::figure(results)?);
     figures.push(learning::figure(results, curves)?);

@@ -2,6 +2,7 @@
 
 use super::drawing;
 use super::plot::{BLUE as BLUE_, ORANGE};
+use crate::base::error::Result;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -27,7 +28,7 @@ pub struct Evaluated {
 }
 
 /// An SVG with lap completion of the snapshots above and gates an episode below, over minutes of training.
-pub fn svg(curve: &[Point], snapshots: &[Evaluated], title: &str) -> anyhow::Result<String> {
+pub fn svg(curve: &[Point], snapshots: &[Evaluated], title: &str) -> Result<String> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
@@ -42,7 +43,7 @@ pub fn svg(curve: &[Point], snapshots: &[Evaluated], title: &str) -> anyhow::Res
     Ok(text)
 }
 
-fn draw_completion(area: &DrawingArea<SVGBackend, Shift>, snapshots: &[Evaluated], end: f64) -> anyhow::Result<()> {
+fn draw_completion(area: &DrawingArea<SVGBackend, Shift>, snapshots: &[Evaluated], end: f64) -> Result<()> {
     let mut chart = ChartBuilder::on(area)
         .margin(10)
         .x_label_area_size(40)
@@ -91,7 +92,7 @@ fn draw_completion(area: &DrawingArea<SVGBackend, Shift>, snapshots: &[Evaluated
         .map_err(drawing)
 }
 
-fn draw_gates(area: &DrawingArea<SVGBackend, Shift>, curve: &[Point], end: f64) -> anyhow::Result<()> {
+fn draw_gates(area: &DrawingArea<SVGBackend, Shift>, curve: &[Point], end: f64) -> Result<()> {
     let top = curve.iter().filter_map(|p| p.gates).fold(1.0, f64::max);
     let mut chart = ChartBuilder::on(area)
         .margin(10)

@@ -1,6 +1,8 @@
 //! The training log: one row of named numbers an iteration.
 
 use crate::base::check::BadInput;
+use crate::base::encode;
+use crate::base::error::Result;
 use crate::base::stats;
 use crate::learn::ppo::train::Iteration;
 use crate::race::env::reward::TERMS;
@@ -71,18 +73,18 @@ impl Row {
 }
 
 /// All rows as CSV, with a header; cells without a number are empty.
-pub fn to_csv(rows: &[Row]) -> anyhow::Result<Vec<u8>> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    if let Some(first) = rows.first() {
-        let names = first.values.iter().map(|(name, _)| name.clone());
-        csv.write_record(["steps".to_string()].into_iter().chain(names))?;
-    }
-    for row in rows {
-        let cell = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
-        let cells = row.values.iter().map(|(_, value)| cell(*value));
-        csv.write_record([row.steps.to_string()].into_iter().chain(cells))?;
-    }
-    Ok(csv.into_inner()?)
+pub fn to_csv(rows: &[Row]) -> Result<Vec<u8>> {
+    let cell = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
+    encode::csv("the log of the training", |csv| {
+        if let Some(first) = rows.first() {
+            let names = first.values.iter().map(|(name, _)| name.clone());
+            csv.write_record(["steps".to_string()].into_iter().chain(names))?;
+        }
+        rows.iter().try_for_each(|row| {
+            let cells = row.values.iter().map(|(_, value)| cell(*value));
+            csv.write_record([row.steps.to_string()].into_iter().chain(cells))
+        })
+    })
 }
 
 /// Columns of the CSV file at `path` by name, row by row; nothing where a cell is empty.

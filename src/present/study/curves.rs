@@ -2,6 +2,7 @@
 
 use super::folder::Folder;
 use super::results::Results;
+use crate::base::error::Result;
 use crate::base::stats;
 use crate::present::run::{evaluated, metrics};
 
@@ -59,7 +60,7 @@ pub struct Curves {
 
 /// Reads the curves of everything that is finished. Returns can be compared only where all runs are paid alike; gates passed
 /// in an episode always can.
-pub fn read(folder: &Folder, results: &Results) -> anyhow::Result<Curves> {
+pub fn read(folder: &Folder, results: &Results) -> Result<Curves> {
     let (what, column) = match results.plan.same_reward {
         true => ("median episode reward", "episode/return_median"),
         false => ("gates an episode, training", "episode/gates"),

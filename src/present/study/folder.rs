@@ -5,6 +5,8 @@ use super::result::{RESULT, RunResult};
 use super::results::Results;
 use super::tables;
 use crate::base::check::{BadInput, Check};
+use crate::base::encode;
+use crate::base::error::{Error, Result};
 use crate::base::fsio;
 use crate::present::run::resolved;
 use crate::race::config::Setup;
@@ -27,7 +29,7 @@ pub struct Folder {
 impl Folder {
     /// The folder at `path`, which is a study's, or is new or empty. Fails where a finished run in it was made with another
     /// configuration than `planned` now asks for. Nothing is written yet.
-    pub fn open(path: &Path, planned: &Planned) -> anyhow::Result<Self> {
+    pub fn open(path: &Path, planned: &Planned) -> Result<Self> {
         let folder = Self { path: path.into() };
         if !folder.path.join(PLAN).is_file() {
             let mut entries = std::fs::read_dir(path).into_iter().flatten().flatten();
@@ -48,13 +50,12 @@ impl Folder {
     }
 
     /// Writes plan and study file, in place of those of an earlier start.
-    pub fn begin(&self, plan: &Plan, study: &str) -> anyhow::Result<()> {
+    pub fn begin(&self, plan: &Plan, study: &str) -> Result<()> {
         let failed = |error| {
             BadInput::new(self.path.display(), error, "a folder that can be written to", "choose another path (--out)")
         };
         std::fs::create_dir_all(&self.path).map_err(failed)?;
-        fsio::replace(&self.path.join(PLAN), (serde_json::to_string_pretty(plan)? + "\n").as_bytes())
-            .map_err(failed)?;
+        fsio::replace(&self.path.join(PLAN), encode::json("the plan", plan)?.as_bytes()).map_err(failed)?;
         fsio::replace(&self.path.join(STUDY), study.as_bytes()).map_err(failed)?;
         std::fs::create_dir_all(self.path.join(RUNS)).map_err(failed)?;
         Ok(())
@@ -76,7 +77,7 @@ impl Folder {
     }
 
     /// The results of all that is finished.
-    pub fn results(&self) -> anyhow::Result<Results> {
+    pub fn results(&self) -> Result<Results> {
         let plan: Plan = json(&self.path.join(PLAN), "the plan of a study")?;
         plan.check().map_err(|invalid| BadInput::at(self.path.join(PLAN).display(), invalid))?;
         let read = |name: &str| -> Result<Option<RunResult>, BadInput> {
@@ -88,13 +89,12 @@ impl Folder {
     }
 
     /// Writes the tables of all that is finished, in place of earlier ones.
-    pub fn write_tables(&self) -> anyhow::Result<Results> {
+    pub fn write_tables(&self) -> Result<Results> {
         loop {
             let results = self.results()?;
             for (name, bytes) in tables::files(&results)? {
                 let path = self.path.join(name);
-                fsio::replace(&path, &bytes)
-                    .map_err(|error| anyhow::anyhow!("{} could not be written: {error}", path.display()))?;
+                fsio::replace(&path, &bytes).map_err(Error::write(&path))?;
             }
             // Another process may have finished a run in the meantime, and have written its tables before these.
             let finished = results.plan.runs.iter().filter(|run| self.finished(&run.name)).count();
@@ -112,7 +112,7 @@ fn json<T: serde::de::DeserializeOwned>(path: &Path, expected: &str) -> Result<T
 }
 
 /// Makes sure that the run in `folder` was made with `setup`.
-pub fn same(folder: &Path, setup: &Setup) -> anyhow::Result<()> {
+pub fn same(folder: &Path, setup: &Setup) -> Result<()> {
     for (name, wanted) in resolved::files(setup)? {
         let path = folder.join(name);
         let there = std::fs::read_to_string(&path).unwrap_or_default();

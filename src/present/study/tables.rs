@@ -3,6 +3,8 @@
 use super::metric::Metric;
 use super::results::{Group, Results};
 use super::summary::Summary;
+use crate::base::encode;
+use crate::base::error::{Error, Result};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -11,64 +13,67 @@ use std::collections::BTreeMap;
 pub const RESULTS: &str = "results.json";
 
 /// Names and contents of all tables.
-pub fn files(results: &Results) -> anyhow::Result<Vec<(&'static str, Vec<u8>)>> {
+pub fn files(results: &Results) -> Result<Vec<(&'static str, Vec<u8>)>> {
     Ok(vec![
         ("runs.csv", runs(results, &results.shown().collect::<Vec<_>>())?),
         ("timing.csv", runs(results, &results.metrics.iter().filter(|metric| metric.clock).collect::<Vec<_>>())?),
         ("settings.csv", groups(results, &[("setting".into(), results.settings.clone())])?),
         ("axes.csv", groups(results, &results.axes)?),
         ("ranking.csv", ranking(results)?),
-        (RESULTS, (json(results)? + "\n").into_bytes()),
+        (RESULTS, json(results)?.into_bytes()),
     ])
 }
 
 /// A line each finished run.
-fn runs(results: &Results, metrics: &[&Metric]) -> anyhow::Result<Vec<u8>> {
+fn runs(results: &Results, metrics: &[&Metric]) -> Result<Vec<u8>> {
     let plan = &results.plan;
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    let header = ["run", "setting"].into_iter().chain(plan.axes.iter().map(String::as_str)).chain(["seed"]);
-    csv.write_record(header.chain(metrics.iter().map(|metric| metric.name.as_str())))?;
-    for (planned, run) in plan.runs.iter().zip(&results.runs) {
-        let Some(run) = run else { continue };
-        let setting = &plan.settings[planned.setting];
-        let mut row = vec![run.run.clone(), run.setting.clone()];
-        row.extend(setting.levels.iter().cloned());
-        row.push(run.seed.to_string());
-        row.extend(metrics.iter().map(|metric| cell(metric.of(run))));
-        csv.write_record(row)?;
-    }
-    Ok(csv.into_inner()?)
+    encode::csv("the table of runs", |csv| {
+        let header = ["run", "setting"].into_iter().chain(plan.axes.iter().map(String::as_str)).chain(["seed"]);
+        csv.write_record(header.chain(metrics.iter().map(|metric| metric.name.as_str())))?;
+        for (planned, run) in plan.runs.iter().zip(&results.runs) {
+            let Some(run) = run else { continue };
+            let setting = &plan.settings[planned.setting];
+            let mut row = vec![run.run.clone(), run.setting.clone()];
+            row.extend(setting.levels.iter().cloned());
+            row.push(run.seed.to_string());
+            row.extend(metrics.iter().map(|metric| cell(metric.of(run))));
+            csv.write_record(row)?;
+        }
+        Ok(())
+    })
 }
 
 /// A line each group and metric.
-fn groups(results: &Results, axes: &[(String, Vec<Group>)]) -> anyhow::Result<Vec<u8>> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    csv.write_record(["axis", "value", "metric", "n", "mean", "sd", "min", "max", "low_95", "high_95"])?;
-    for (axis, groups) in axes {
-        for group in groups {
-            for metric in results.shown() {
-                let Some(Summary { n, mean, sd, min, max, interval }) = group.metrics.get(&metric.name) else {
-                    continue;
-                };
-                let [low, high] = interval.map_or([None; 2], |ends| ends.map(Some));
-                let numbers = [Some(*mean), *sd, Some(*min), Some(*max), low, high].map(cell);
-                let names = [axis.clone(), group.name.clone(), metric.name.clone(), n.to_string()];
-                csv.write_record(names.into_iter().chain(numbers))?;
+fn groups(results: &Results, axes: &[(String, Vec<Group>)]) -> Result<Vec<u8>> {
+    encode::csv("the table of settings", |csv| {
+        csv.write_record(["axis", "value", "metric", "n", "mean", "sd", "min", "max", "low_95", "high_95"])?;
+        for (axis, groups) in axes {
+            for group in groups {
+                for metric in results.shown() {
+                    let Some(Summary { n, mean, sd, min, max, interval }) = group.metrics.get(&metric.name) else {
+                        continue;
+                    };
+                    let [low, high] = interval.map_or([None; 2], |ends| ends.map(Some));
+                    let numbers = [Some(*mean), *sd, Some(*min), Some(*max), low, high].map(cell);
+                    let names = [axis.clone(), group.name.clone(), metric.name.clone(), n.to_string()];
+                    csv.write_record(names.into_iter().chain(numbers))?;
+                }
             }
         }
-    }
-    Ok(csv.into_inner()?)
+        Ok(())
+    })
 }
 
-fn ranking(results: &Results) -> anyhow::Result<Vec<u8>> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    csv.write_record(["rank", "setting", "runs", "score", "probability_best", "rank_low_95", "rank_high_95"])?;
-    for place in &results.ranking {
-        let [low, high] = place.ranks.map_or([None; 2], |ends| ends.map(Some));
-        let names = [place.rank.to_string(), place.setting.clone(), place.runs.to_string()];
-        csv.write_record(names.into_iter().chain([Some(place.score), place.best, low, high].map(cell)))?;
-    }
-    Ok(csv.into_inner()?)
+fn ranking(results: &Results) -> Result<Vec<u8>> {
+    encode::csv("the ranking", |csv| {
+        csv.write_record(["rank", "setting", "runs", "score", "probability_best", "rank_low_95", "rank_high_95"])?;
+        for place in &results.ranking {
+            let [low, high] = place.ranks.map_or([None; 2], |ends| ends.map(Some));
+            let names = [place.rank.to_string(), place.setting.clone(), place.runs.to_string()];
+            csv.write_record(names.into_iter().chain([Some(place.score), place.best, low, high].map(cell)))?;
+        }
+        Ok(())
+    })
 }
 
 fn cell(value: Option<f64>) -> String {
@@ -85,7 +90,7 @@ struct RunLine<'a> {
 }
 
 /// All tables and how they were made.
-pub fn json(results: &Results) -> anyhow::Result<String> {
+pub fn json(results: &Results) -> Result<String> {
     let shown: Vec<&Metric> = results.shown().collect();
     let of = |metrics: &BTreeMap<String, Summary>| {
         let metrics = metrics.iter().filter(|(name, _)| shown.iter().any(|metric| metric.name == **name));
@@ -100,7 +105,7 @@ pub fn json(results: &Results) -> anyhow::Result<String> {
     });
     let axes = results.axes.iter().map(|(axis, groups)| {
         let levels: Vec<Group> = groups.iter().map(group).collect();
-        Ok((axis.clone(), serde_json::to_value(levels)?))
+        serde_json::to_value(levels).map(|levels| (axis.clone(), levels)).map_err(Error::encode("the axes"))
     });
     let methods: BTreeMap<_, _> = results.methods().into_iter().collect();
     let document = json!({
@@ -111,8 +116,8 @@ pub fn json(results: &Results) -> anyhow::Result<String> {
         "methods": methods,
         "ranking": results.ranking,
         "settings": results.settings.iter().map(group).collect::<Vec<_>>(),
-        "axes": axes.collect::<serde_json::Result<Map<String, Value>>>()?,
+        "axes": axes.collect::<Result<Map<String, Value>>>()?,
         "runs": runs.collect::<Vec<_>>(),
     });
-    Ok(serde_json::to_string_pretty(&document)?)
+    encode::json("the results", &document)
 }

@@ -5,6 +5,7 @@ mod profile;
 mod spectrum;
 mod time;
 
+use crate::base::error::Result;
 use crate::insight::diagnose::Diagnosed;
 use crate::insight::diagnose::figures::{ChannelFigure, channels};
 use crate::insight::diagnose::finding::Ahead;
@@ -42,11 +43,11 @@ pub struct Figures {
 }
 
 impl Figures {
-    pub fn new(diagnosed: &Diagnosed) -> anyhow::Result<Self> {
+    pub fn new(diagnosed: &Diagnosed) -> Result<Self> {
         let shown = channels(diagnosed).into_iter().map(|channel| Ok(Shown { figures: of(&channel)?, channel }));
         let ahead = &diagnosed.diagnosis.horizons;
         let open_loop = (!ahead.is_empty()).then(|| open_loop(ahead)).transpose()?;
-        Ok(Self { channels: shown.collect::<anyhow::Result<_>>()?, open_loop })
+        Ok(Self { channels: shown.collect::<Result<_>>()?, open_loop })
     }
 
     /// One after the other.
@@ -55,7 +56,7 @@ impl Figures {
     }
 }
 
-fn of(channel: &ChannelFigure) -> anyhow::Result<Vec<Figure>> {
+fn of(channel: &ChannelFigure) -> Result<Vec<Figure>> {
     let name = |kind: &str| format!("{}-{kind}", channel.name.replace(' ', "-"));
     let mut out = Vec::new();
     if !channel.windows.is_empty() {
@@ -79,7 +80,7 @@ fn of(channel: &ChannelFigure) -> anyhow::Result<Vec<Figure>> {
     Ok(out)
 }
 
-fn open_loop(ahead: &[Ahead]) -> anyhow::Result<Figure> {
+fn open_loop(ahead: &[Ahead]) -> Result<Figure> {
     let caption =
         "How far the simulation strays from the flight, left alone with the logged commands: root mean squares \
         over many starts."

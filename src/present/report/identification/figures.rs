@@ -1,5 +1,6 @@
 //! A channel: measured and predicted over time, the residual below (the paper's Figure 1).
 
+use crate::base::error::Result;
 use crate::insight::identify::rates::Compared;
 use crate::insight::identify::result::Channel;
 use crate::present::report::drawing;
@@ -15,7 +16,7 @@ const PREDICTED: RGBColor = RGBColor(230, 140, 0);
 
 /// An SVG of one channel: the ten seconds around the border between training and validation above, all of the residual
 /// below.
-pub fn channel(channel: &Channel) -> anyhow::Result<String> {
+pub fn channel(channel: &Channel) -> Result<String> {
     plot::svg(HEIGHT, |root| {
         let (above, below) = root.split_vertically(HEIGHT * 6 / 10);
         signals(&above, channel)?;
@@ -40,7 +41,7 @@ fn joined(channel: &Channel) -> (Vec<[f64; 3]>, f64) {
     (out, border)
 }
 
-fn signals(area: &Area, channel: &Channel) -> anyhow::Result<()> {
+fn signals(area: &Area, channel: &Channel) -> Result<()> {
     let (all, border) = joined(channel);
     let shown: Vec<[f64; 3]> = all.into_iter().filter(|p| (p[0] - border).abs() <= 5.0).collect();
     // Room for the legend.
@@ -65,7 +66,7 @@ fn signals(area: &Area, channel: &Channel) -> anyhow::Result<()> {
     divide(&mut chart, border)
 }
 
-fn residual(area: &Area, channel: &Channel) -> anyhow::Result<()> {
+fn residual(area: &Area, channel: &Channel) -> Result<()> {
     let (all, border) = joined(channel);
     let step = all.len().div_ceil(POINTS).max(1);
     // Of each step the largest, so that nothing is hidden.
@@ -89,7 +90,7 @@ fn residual(area: &Area, channel: &Channel) -> anyhow::Result<()> {
 }
 
 /// The border between training and validation.
-fn divide(chart: &mut Chart, border: f64) -> anyhow::Result<()> {
+fn divide(chart: &mut Chart, border: f64) -> Result<()> {
     let y = chart.y_range();
     let line = PathElement::new([(border, y.start), (border, y.end)], BLACK.mix(0.5).stroke_width(2));
     chart.draw_series([line]).map_err(drawing)?;

@@ -3,6 +3,7 @@
 use super::learning::axis;
 use super::marks::{self, Key};
 use super::{Figure, best};
+use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, Area};
 use crate::present::study::bands::{Band, band};
@@ -14,7 +15,7 @@ use plotters::prelude::*;
 const PANEL: u32 = 380;
 
 /// Of the share of agents that complete a lap.
-pub fn completion(results: &Results, curves: &Curves) -> anyhow::Result<Figure> {
+pub fn completion(results: &Results, curves: &Curves) -> Result<Figure> {
     let what = What { name: "seed-bands-completion", axis: "fixed starts that lap, %", of: |curve| &curve.completion };
     let caption = "Fixed-start lap completion of the snapshots: median and quartiles over the seeds of each of the best settings. Dashed: 95 %, \
 ready for deployment.";
@@ -22,7 +23,7 @@ ready for deployment.";
 }
 
 /// Of what was gathered while training.
-pub fn learning(results: &Results, curves: &Curves) -> anyhow::Result<Figure> {
+pub fn learning(results: &Results, curves: &Curves) -> Result<Figure> {
     let what = What { name: "seed-bands-learning", axis: curves.what, of: |curve| &curve.learning };
     let caption = format!(
         "Learning curves: median and quartiles over the seeds of each of the best settings. Shapes: where the median seed has its first \
@@ -45,7 +46,7 @@ fn draw(
     range: Option<std::ops::Range<f64>>,
     sections: bool,
     caption: String,
-) -> anyhow::Result<Figure> {
+) -> Result<Figure> {
     let bands = |over| best(results).into_iter().filter_map(move |setting| band(curves, setting, over, what.of));
     let (minutes, steps): (Vec<Band>, Vec<Band>) = (bands(Over::Minutes).collect(), bands(Over::Steps).collect());
     let name = |(i, band): (usize, &Band)| {
@@ -70,7 +71,7 @@ fn draw(
     Ok(Figure { name: what.name, caption, svg })
 }
 
-fn panel(area: &Area, bands: &[Band], axes: [&str; 2], y: std::ops::Range<f64>, sections: bool) -> anyhow::Result<()> {
+fn panel(area: &Area, bands: &[Band], axes: [&str; 2], y: std::ops::Range<f64>, sections: bool) -> Result<()> {
     let end = bands.iter().filter_map(|band| Some(band.points.last()?.0)).fold(1e-9, f64::max);
     let mut chart = ChartBuilder::on(area)
         .margin(10)

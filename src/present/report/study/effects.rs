@@ -1,6 +1,7 @@
 //! What each axis does to smoothness, saturation, lap time and success: means over all else.
 
 use super::Figure;
+use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, Area, TEXT};
 use crate::present::study::results::{Group, Results};
@@ -18,7 +19,7 @@ const ROW: u32 = 200;
 const HEAD: i32 = 30;
 
 /// A row each axis, a column each metric; none of a study with a single axis.
-pub fn figure(results: &Results) -> anyhow::Result<Option<Figure>> {
+pub fn figure(results: &Results) -> Result<Option<Figure>> {
     let axes = &results.axes;
     if axes.is_empty() {
         return Ok(None);
@@ -54,7 +55,7 @@ fn panel(
     levels: &[Group],
     (metric, factor): (&str, f64),
     range: std::ops::Range<f64>,
-) -> anyhow::Result<()> {
+) -> Result<()> {
     let bottom = range.start;
     let mut chart = ChartBuilder::on(area)
         .margin_right(8)

@@ -2,6 +2,7 @@
 
 use super::marks::{self, Key};
 use super::{Figure, best};
+use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, Area, TEXT};
 use crate::present::study::curves::{Curve, Curves, Over};
@@ -15,7 +16,7 @@ const OTHERS: RGBColor = RGBColor(210, 210, 210);
 const DARKER: RGBColor = RGBColor(165, 165, 165);
 
 /// Over time above, over steps below.
-pub fn figure(results: &Results, curves: &Curves) -> anyhow::Result<Figure> {
+pub fn figure(results: &Results, curves: &Curves) -> Result<Figure> {
     // Of each of the best settings the best run; of equals that with the lowest seed.
     let of = |setting: usize| {
         let runs = curves.runs.iter().filter(|curve| curve.setting == setting);
@@ -48,7 +49,7 @@ snapshot with which {share:.0} % of random-start agents pass a section. Stars: t
     Ok(Figure { name: "learning-curves", caption, svg })
 }
 
-fn panel(area: &Area, curves: &Curves, shown: &[&Curve], over: Over) -> anyhow::Result<()> {
+fn panel(area: &Area, curves: &Curves, shown: &[&Curve], over: Over) -> Result<()> {
     let all = || curves.runs.iter().flat_map(|curve| &curve.learning);
     let end = all().map(|at| over.x(at)).fold(0.0, f64::max).max(1e-9);
     let mut chart = ChartBuilder::on(area)

@@ -1,5 +1,6 @@
 //! Colours and shapes that readers of every kind of colour vision tell apart, and their keys.
 
+use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{Area, Linear, On, TEXT};
 use plotters::prelude::*;
@@ -49,7 +50,7 @@ pub fn draw(
     at: (f64, f64),
     shape: &[(i32, i32)],
     [fill, edge]: [RGBColor; 2],
-) -> anyhow::Result<()> {
+) -> Result<()> {
     let around: Vec<_> = shape.iter().chain(shape.first()).copied().collect();
     let mark = EmptyElement::at(at) + Polygon::new(shape.to_vec(), fill.filled()) + PathElement::new(around, edge);
     chart.draw_series([mark]).map_err(drawing)?;
@@ -69,7 +70,7 @@ impl Key {
     }
 
     /// Draws it from the top of `area` down.
-    pub fn draw(&self, area: &Area) -> anyhow::Result<()> {
+    pub fn draw(&self, area: &Area) -> Result<()> {
         let font = || ("sans-serif", TEXT).into_font().color(&BLACK).pos(Pos::new(HPos::Left, VPos::Center));
         let mut y = LINE / 2 + 4;
         for (colour, name) in &self.lines {

@@ -1,6 +1,7 @@
 //! The settings in order: each run, the mean and its interval.
 
 use super::Figure;
+use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, TEXT};
 use crate::present::study::results::Results;
@@ -14,7 +15,7 @@ const ROW: u32 = 24;
 const LETTER: u32 = 8;
 
 /// Fixed-start lap completion, a row each setting.
-pub fn figure(results: &Results) -> anyhow::Result<Figure> {
+pub fn figure(results: &Results) -> Result<Figure> {
     let n = results.ranking.len();
     let longest = results.ranking.iter().map(|place| place.setting.len() + 4).max().unwrap_or_default() as u32;
     let left = (LETTER * longest).clamp(80, 460);

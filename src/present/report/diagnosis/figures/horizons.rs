@@ -1,6 +1,7 @@
 //! Errors of the open loop.
 
 use super::{AFTER, BEFORE};
+use crate::base::error::Result;
 use crate::insight::diagnose::finding::Ahead;
 use crate::insight::diagnose::horizon::Horizon;
 use crate::present::report::drawing;
@@ -11,7 +12,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 type Of = fn(&Horizon) -> f64;
 
 /// Bars before and after, one panel a quantity.
-pub fn draw(ahead: &[Ahead]) -> anyhow::Result<String> {
+pub fn draw(ahead: &[Ahead]) -> Result<String> {
     let panels: [(&str, Of); 3] = [
         ("velocity, m/s off", |h| h.velocity_m_s),
         ("position, m off", |h| h.position_m),
@@ -25,7 +26,7 @@ pub fn draw(ahead: &[Ahead]) -> anyhow::Result<String> {
     })
 }
 
-fn panel(area: &Area, name: &str, of: Of, ahead: &[Ahead]) -> anyhow::Result<()> {
+fn panel(area: &Area, name: &str, of: Of, ahead: &[Ahead]) -> Result<()> {
     let top = ahead.iter().flat_map(|a| [of(&a.before), of(&a.after)]).fold(1e-9, f64::max);
     let mut chart = ChartBuilder::on(area)
         .caption(name, ("sans-serif", 18))
@@ -63,7 +64,7 @@ fn panel(area: &Area, name: &str, of: Of, ahead: &[Ahead]) -> anyhow::Result<()>
 }
 
 /// Text at a place of the whole figure.
-fn area_text(area: &Area, text: &str, at: (i32, i32), font: &TextStyle) -> anyhow::Result<()> {
+fn area_text(area: &Area, text: &str, at: (i32, i32), font: &TextStyle) -> Result<()> {
     let (x, y) = area.get_pixel_range();
     area.draw_text(text, font, (at.0 - x.start, at.1 - y.start)).map_err(drawing)
 }

@@ -1,6 +1,7 @@
 //! The error along the signal that explains most of it.
 
 use super::{AFTER, BEFORE};
+use crate::base::error::Result;
 use crate::insight::diagnose::figures::ChannelFigure;
 use crate::insight::diagnose::figures::profile::{Profile, ProfileLevel};
 use crate::present::report::drawing;
@@ -12,7 +13,7 @@ use plotters::prelude::*;
 const HALF: f64 = 1.96;
 
 /// Means with error bars, before and after.
-pub fn draw(channel: &ChannelFigure, profile: &Profile) -> anyhow::Result<String> {
+pub fn draw(channel: &ChannelFigure, profile: &Profile) -> Result<String> {
     type Of = fn(&ProfileLevel) -> [f64; 2];
     let sides: [(Of, RGBColor); 2] = [(|l| l.before, BEFORE), (|l| l.after, AFTER)];
     plot::keyed(320, &super::lines(), |root| {

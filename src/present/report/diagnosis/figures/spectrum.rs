@@ -1,6 +1,7 @@
 //! The error by frequency.
 
 use super::{AFTER, BEFORE};
+use crate::base::error::Result;
 use crate::insight::diagnose::figures::ChannelFigure;
 use crate::insight::diagnose::figures::spectrum::Spectra;
 use crate::present::report::drawing;
@@ -9,7 +10,7 @@ use crate::present::report::plot::{self, TEXT, line};
 use plotters::prelude::*;
 
 /// Power densities, both axes logarithmic.
-pub fn draw(channel: &ChannelFigure, spectra: &Spectra) -> anyhow::Result<String> {
+pub fn draw(channel: &ChannelFigure, spectra: &Spectra) -> Result<String> {
     plot::keyed(320, &super::lines(), |root| {
         let both = || spectra.before.iter().chain(&spectra.after).copied().filter(|p| *p > 0.0);
         let (low, high) = (both().fold(f64::INFINITY, f64::min), both().fold(0.0, f64::max));

@@ -1,6 +1,7 @@
 //! Measured and predicted where the prediction is worst, and the error over the flight.
 
 use super::{AFTER, BEFORE};
+use crate::base::error::Result;
 use crate::insight::diagnose::figures::ChannelFigure;
 use crate::insight::diagnose::figures::windows::Window;
 use crate::present::report::drawing;
@@ -13,7 +14,7 @@ const ABOVE: u32 = 270;
 const BELOW: u32 = 190;
 
 /// The worst stretches side by side, the whole flight below.
-pub fn draw(channel: &ChannelFigure) -> anyhow::Result<String> {
+pub fn draw(channel: &ChannelFigure) -> Result<String> {
     plot::keyed(ABOVE + BELOW, &series().map(|(_, style, name)| (name, style)), |root| {
         let (above, below) = root.split_vertically(ABOVE);
         for (i, (area, window)) in
@@ -25,7 +26,7 @@ pub fn draw(channel: &ChannelFigure) -> anyhow::Result<String> {
     })
 }
 
-fn stretch(area: &Area, channel: &ChannelFigure, window: &Window, i: usize) -> anyhow::Result<()> {
+fn stretch(area: &Area, channel: &ChannelFigure, window: &Window, i: usize) -> Result<()> {
     let points = &window.points;
     let y = range(points.iter().flat_map(|p| p[1..].iter().copied()));
     let flight = window.flight.map_or(String::new(), |f| format!(" of flight {f}"));
@@ -57,7 +58,7 @@ fn mark(i: usize) -> char {
     char::from(b'A' + i as u8)
 }
 
-fn whole(area: &Area, channel: &ChannelFigure) -> anyhow::Result<()> {
+fn whole(area: &Area, channel: &ChannelFigure) -> Result<()> {
     let errors = &channel.errors;
     let top = 1.2 * errors.pieces.iter().flatten().map(|p| p[1].max(p[2])).fold(1e-12, f64::max);
     let mut chart = ChartBuilder::on(area)
