@@ -3,10 +3,11 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use racer::base::lane::Level;
 use racer::learn::ppo::train::Training;
+use racer::model::constants::CONTROL_S;
 use racer::model::dynamics::{Factors, Parameters, State};
 use racer::model::sim::Batch;
 use racer::race::config::{Config, Setup};
-use racer::race::env::{DT, Race};
+use racer::race::env::Race;
 
 fn setup() -> (Config, Race) {
     let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).expect("built in");
@@ -18,7 +19,7 @@ fn setup() -> (Config, Race) {
 fn physics(c: &mut Criterion) {
     let (_, race) = setup();
     let state = State::new([0.0; 3], [5.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0; 4], 23.0);
-    let parameters = Parameters::new(&race.vehicle, &Factors::NOMINAL, DT);
+    let parameters = Parameters::new(&race.vehicle, &Factors::NOMINAL, CONTROL_S);
     let mut group = c.benchmark_group("physics");
     group.throughput(Throughput::Elements(2048 * 32));
     for level in Level::available() {

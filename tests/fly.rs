@@ -6,12 +6,13 @@ use racer::flight::fly::{by_pilot, by_policy};
 use racer::flight::pilot::Kind;
 use racer::flight::sensors::SensorConfig;
 use racer::learn::nn::Network;
+use racer::model::constants::CONTROL_S;
 use racer::model::dynamics::{Factors, Parameters, State, specific_force};
 use racer::model::vehicle::Vehicle;
 use racer::race::config::Setup;
+use racer::race::env::Race;
 use racer::race::env::observe::OBSERVATIONS;
 use racer::race::env::reset::Place;
-use racer::race::env::{DT, Race};
 
 fn sensors(name: &str) -> SensorConfig {
     SensorConfig::load(name).expect("built in")
@@ -79,14 +80,14 @@ fn specific_force_of_fall_and_hover() {
     let state = |thrust: f64, velocity: [f64; 3]| {
         State::new([0.0; 3], velocity, [0.8, 0.6, 0.0, 0.0], [0.0, 0.0, 0.0, thrust], 23.0)
     };
-    let parameters = Parameters::new(&vehicle, &Factors::NOMINAL, DT);
+    let parameters = Parameters::new(&vehicle, &Factors::NOMINAL, CONTROL_S);
     let [x, y, z] = specific_force(&state(hover, [0.0; 3]), &parameters);
     assert!(x == 0.0 && y == 0.0 && (z - vehicle.gravity_m_s2).abs() < 1e-9);
     // Drag is against the velocity: 12 m/s along the body's y.
     let [_, y, _] = specific_force(&state(hover, [0.0, 12.0 * 0.28, 12.0 * 0.96]), &parameters);
     assert!((y + parameters.drag[1] * 144.0).abs() < 1e-9, "{y}");
     vehicle.thrust_n = [0.0; 6];
-    let falling = Parameters::new(&vehicle, &Factors::NOMINAL, DT);
+    let falling = Parameters::new(&vehicle, &Factors::NOMINAL, CONTROL_S);
     assert_eq!(specific_force(&state(0.3, [0.0; 3]), &falling), [0.0; 3]);
 }
 

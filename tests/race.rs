@@ -11,7 +11,7 @@ use racer::race::env::observe::{LAYOUT, OBSERVATIONS, layout};
 use racer::race::env::reset::{self, Place, Start};
 use racer::race::env::reward::TERMS;
 use racer::race::env::terminate::CAUSES;
-use racer::race::env::{Block, DT, Race};
+use racer::race::env::{Block, Race};
 
 type L = Portable<f32>;
 
@@ -26,7 +26,8 @@ fn race(settings: &str) -> (Race, Track) {
 
 /// A block whose lanes all start at `position` with `velocity`, level and facing west, flying to `target`.
 fn block(race: &Race, position: [f64; 3], velocity: [f64; 3], target: usize) -> Block<L> {
-    let parameters = racer::model::dynamics::Parameters::new(&race.vehicle, &Factors::NOMINAL, DT);
+    let parameters =
+        racer::model::dynamics::Parameters::new(&race.vehicle, &Factors::NOMINAL, racer::model::constants::CONTROL_S);
     let command = [0.0, 0.0, 0.0, race.hover_command];
     let state = State::new(position, velocity, [0.0, 0.0, 0.0, 1.0], command, 23.5);
     let mut block = race.empty_block(0);

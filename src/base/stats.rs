@@ -2,6 +2,9 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+/// 97.5 % quantile of the standard normal distribution: half the width of a 95 % interval, in standard deviations.
+pub const NORMAL_95: f64 = 1.959_964;
+
 /// Mean; 0 for no sample.
 pub fn mean(x: &[f64]) -> f64 {
     if x.is_empty() { 0.0 } else { x.iter().sum::<f64>() / x.len() as f64 }

@@ -7,11 +7,12 @@ use crate::flight::Log;
 use crate::flight::pilot::{Kind, Limits, Pilot, Seen};
 use crate::flight::sensors::SensorConfig;
 use crate::learn::nn::Network;
+use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::{Factors, Parameters, State};
 use crate::model::thrust::specific_thrust;
 use crate::model::vehicle::Vehicle;
+use crate::race::env::Race;
 use crate::race::env::terminate::CAUSES;
-use crate::race::env::{DT, Race};
 use crate::race::heat;
 use recorder::Recorder;
 
@@ -35,7 +36,7 @@ const AFTER_S: f64 = 1.0;
 /// The excitation pilot flies `kinds` of manoeuvres, all where none is named, from the ground until it has landed, for at
 /// most `seconds`. It lands early where the battery is empty before.
 pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Kind], seed: u64, seconds: f64) -> Flown {
-    let parameters = Parameters::new(vehicle, &Factors::NOMINAL, DT);
+    let parameters = Parameters::new(vehicle, &Factors::NOMINAL, CONTROL_S);
     let battery = &vehicle.battery;
     let limits = Limits {
         max_rate_rad_s: vehicle.max_rates_rad_s(),
@@ -48,14 +49,14 @@ pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Kind], seed:
     let mut state = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], battery.full_v);
     recorder.rest(true);
     let mut landed_s = 0.0;
-    while recorder.time_s() < seconds - 0.5 * DT && landed_s < AFTER_S {
+    while recorder.time_s() < seconds - 0.5 * CONTROL_S && landed_s < AFTER_S {
         let rates = if recorder.resting() { [0.0; 3] } else { state.body_rates(&parameters) };
         let (position, velocity, attitude, voltage) = (state.position, state.velocity, state.attitude, state.voltage);
         let seen = Seen { time_s: recorder.time_s(), position, velocity, attitude, rates, voltage };
         let command = pilot.command(&seen);
         state = recorder.hold(&state, command);
         settle(&mut state, &mut recorder, &parameters);
-        landed_s = if pilot.landed() { landed_s + DT } else { 0.0 };
+        landed_s = if pilot.landed() { landed_s + CONTROL_S } else { 0.0 };
     }
     recorder.finish(Vec::new(), None)
 }

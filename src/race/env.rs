@@ -13,6 +13,7 @@ use crate::base::check::{Check, Invalid};
 use crate::base::lane::{Bits, LANES, Lane, Lane32, Mask, build, each, sum_of_squares};
 use crate::base::rng::Philox;
 use crate::model::attitude::{body_axes, dot};
+use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::{self, Factors, Parameters, State};
 use crate::model::track::{Pose, Track};
 use crate::model::vehicle::Vehicle;
@@ -53,9 +54,6 @@ impl Check for EnvConfig {
         self.reward.check().map_err(|invalid| invalid.within("reward"))
     }
 }
-
-/// Control and simulation step, s: the paper's 100 Hz.
-pub const DT: f64 = 0.01;
 
 /// A track, a vehicle and the rules: everything that a race's episodes share.
 #[derive(Clone, Debug)]
@@ -154,7 +152,7 @@ impl Race {
             empty_v: vehicle.battery.empty_v,
             hover_command: vehicle.hover_command(0.5 * (vehicle.battery.full_v + vehicle.battery.empty_v)),
             vehicle: vehicle.clone(),
-            dt: DT,
+            dt: CONTROL_S,
             rng: Philox::new(seed),
             noisy: true,
         }

@@ -8,10 +8,11 @@ use crate::base::fsio;
 use crate::learn::nn::mlp::Shape;
 use crate::learn::nn::{HIDDEN, Layer, Network};
 use crate::learn::policy::ACTIONS;
+use crate::model::constants::CONTROL_S;
 use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
+use crate::race::env::EnvConfig;
 use crate::race::env::observe::{OBSERVATIONS, layout};
-use crate::race::env::{DT, EnvConfig};
 use crate::race::eval::EvalConfig;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView, serialize};
 use serde::{Deserialize, Serialize};
@@ -70,7 +71,7 @@ impl Metadata {
     fn new(about: &About) -> Self {
         Self {
             format: FORMAT.into(),
-            control_rate_hz: (1.0 / DT).round(),
+            control_rate_hz: (1.0 / CONTROL_S).round(),
             observation: observation(&about.vehicle),
             action: ["roll rate", "pitch rate", "yaw rate", "collective thrust"].map(String::from),
             about: about.clone(),

@@ -5,9 +5,9 @@ use crate::base::rng::{self, Philox, Sequence};
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Stream, VehicleRecord};
 use crate::model::attitude::{body_axes, compose, dot, normalized, small_rotation};
+use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::{Factors, Parameters, State, specific_force, step};
 use crate::model::vehicle::Vehicle;
-use crate::race::env::DT;
 
 /// Records a flight, control step by control step.
 pub struct Recorder<'a> {
@@ -38,7 +38,7 @@ struct Bias {
 impl<'a> Recorder<'a> {
     /// A recorder of a flight of the nominal `vehicle`; `seed` decides all errors of the sensors.
     pub fn new(vehicle: &Vehicle, sensors: &'a SensorConfig, seed: u64) -> Self {
-        let fine_steps = (sensors.imu.rate_hz * DT).round() as usize;
+        let fine_steps = (sensors.imu.rate_hz * CONTROL_S).round() as usize;
         let rng = Philox::new(seed);
         let mut sequences = [0, 1, 2].map(|stream| rng.sequence(rng::Stream::Sensors, stream, 0));
         let bias = Bias {
@@ -53,7 +53,7 @@ impl<'a> Recorder<'a> {
         let record = VehicleRecord { mass_kg: Some(vehicle.mass_kg), max_rate_rad_s: Some(vehicle.max_rates_rad_s()) };
         Recorder {
             sensors,
-            parameters: Parameters::new(vehicle, &Factors::NOMINAL, DT / fine_steps as f64),
+            parameters: Parameters::new(vehicle, &Factors::NOMINAL, CONTROL_S / fine_steps as f64),
             fine_steps,
             controls: 0,
             resting: false,
@@ -68,7 +68,7 @@ impl<'a> Recorder<'a> {
 
     /// Time recorded so far, s.
     pub fn time_s(&self) -> f64 {
-        self.controls as f64 * DT
+        self.controls as f64 * CONTROL_S
     }
 
     /// Whether the ground carries the vehicle.

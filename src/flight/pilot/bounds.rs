@@ -2,9 +2,8 @@
 
 use super::Limits;
 use super::view::View;
+use crate::model::constants::GRAVITY_M_S2;
 
-/// What the pilot takes gravity for, m/s2.
-pub const GRAVITY: f64 = 9.81;
 /// Farthest from the origin along x and y, m.
 pub const REACH_M: f64 = 100.0;
 /// Lowest and highest over the origin between take-off and landing, but for what is flown low on purpose, m.
@@ -18,7 +17,7 @@ const BRAKING: f64 = 6.0;
 const REACTION_S: f64 = 0.35;
 /// Time for which thrust goes on after the throttle is closed, s, and the deceleration of a climb with what idle leaves, m/s2.
 const CLOSING_S: f64 = 0.09;
-const IDLE_SINK: f64 = 0.7 * GRAVITY;
+const IDLE_SINK: f64 = 0.7 * GRAVITY_M_S2;
 
 /// Whether the vehicle would leave the box unless it is stopped now.
 pub fn leaves(view: &View, limits: &Limits) -> bool {
@@ -35,15 +34,15 @@ pub fn leaves(view: &View, limits: &Limits) -> bool {
 fn lowest(view: &View, limits: &Limits) -> f64 {
     let turning = view.tilt() / limits.max_rate_rad_s[0].min(limits.max_rate_rad_s[1]).min(6.0);
     let time = 0.1 + turning;
-    let fall = (GRAVITY * time - view.velocity.z).max(0.0);
+    let fall = (GRAVITY_M_S2 * time - view.velocity.z).max(0.0);
     let spare = 2.0 / (1.0 + limits.hover_command) - 1.0;
-    let stopping = fall * fall / (2.0 * GRAVITY * (0.6 * spare).max(0.3));
-    view.position.z + view.velocity.z * time - 0.5 * GRAVITY * time * time - stopping
+    let stopping = fall * fall / (2.0 * GRAVITY_M_S2 * (0.6 * spare).max(0.3));
+    view.position.z + view.velocity.z * time - 0.5 * GRAVITY_M_S2 * time * time - stopping
 }
 
 /// Height at which a climb would end if the throttle were closed now, but for drag.
 fn highest(view: &View, limits: &Limits) -> f64 {
     let spare = 2.0 / (1.0 + limits.hover_command) - 1.0;
-    let climb = (view.velocity.z + GRAVITY * spare * CLOSING_S).max(0.0);
+    let climb = (view.velocity.z + GRAVITY_M_S2 * spare * CLOSING_S).max(0.0);
     view.position.z + climb * climb / (2.0 * IDLE_SINK)
 }

@@ -1,7 +1,8 @@
 //! From a wanted velocity over attitude to commands, with a rough idea of the thrust.
 
+use super::Limits;
 use super::view::{View, wrapped};
-use super::{Limits, bounds::GRAVITY};
+use crate::model::constants::GRAVITY_M_S2;
 use nalgebra::Vector3;
 
 /// What to fly.
@@ -64,7 +65,7 @@ impl Cascade {
     pub fn command(&mut self, view: &View, demand: &Demand, dt: f64) -> [f64; 4] {
         let wanted = self.specific_force(view, demand, dt);
         let along = wanted.dot(&view.up());
-        let thrust = -1.0 + (1.0 + self.hover) * along / GRAVITY;
+        let thrust = -1.0 + (1.0 + self.hover) * along / GRAVITY_M_S2;
 
         let rates = toward(view, wanted) * ATTITUDE_GAIN;
         let (mut roll, mut pitch) = (rates.x / self.max_rate[0], rates.y / self.max_rate[1]);
@@ -91,10 +92,11 @@ impl Cascade {
             self.standing.fixed_rows_mut::<2>(0).copy_from(&over_ground.cap_magnitude(12.0));
         }
         // The thrust curve taken as a line from nothing at -1 through hover.
-        let strongest = 0.85 * 2.0 * GRAVITY / (1.0 + self.hover);
+        let strongest = 0.85 * 2.0 * GRAVITY_M_S2 / (1.0 + self.hover);
         let vertical = VELOCITY_GAIN[1] * error.z + self.standing.z;
-        let vertical = GRAVITY + vertical.clamp(-0.75 * GRAVITY, 0.8 * (strongest - GRAVITY).max(0.1 * GRAVITY));
-        let room = (strongest.powi(2) - vertical.powi(2)).max(0.1 * GRAVITY).sqrt().min(STEEPEST * vertical);
+        let vertical = GRAVITY_M_S2
+            + vertical.clamp(-0.75 * GRAVITY_M_S2, 0.8 * (strongest - GRAVITY_M_S2).max(0.1 * GRAVITY_M_S2));
+        let room = (strongest.powi(2) - vertical.powi(2)).max(0.1 * GRAVITY_M_S2).sqrt().min(STEEPEST * vertical);
         let over_ground = (error.xy() * VELOCITY_GAIN[0] + self.standing.xy()).cap_magnitude(room);
         Vector3::new(over_ground.x, over_ground.y, vertical)
     }

@@ -6,7 +6,7 @@ use super::problem::Problem;
 use super::random;
 use super::select::{Added, Selection};
 use crate::base::stats::mean;
-use crate::model::dynamics::extended::CONTROL_S;
+use crate::model::constants::CONTROL_S;
 use crate::model::effects;
 
 /// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two of the same size.

@@ -6,6 +6,7 @@ use super::gram::{Grams, inverse};
 use super::judge::Judge;
 use super::model::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
 use super::problem::ChannelValues;
+use crate::base::stats::NORMAL_95;
 use crate::model::effects::{self, Card};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -32,7 +33,7 @@ pub fn find(judge: &Judge) -> (Vec<Drift>, Option<Finding>) {
     let mut add = |name: &str, unit, base: f64, value: f64, sd: f64, material: f64, scale: f64| {
         let change = value - base;
         if change.abs() > SURE * sd && change.abs() > material * base.abs() {
-            let half = 1.96 * sd * scale;
+            let half = NORMAL_95 * sd * scale;
             let value = value * scale;
             out.push(Drift {
                 parameter: name.into(),
@@ -160,7 +161,7 @@ fn cause(judge: &Judge) -> Option<Finding> {
         found.iter().skip(1).filter(|f| 1.0 - f.0 < 2.0 * (1.0 - accounts) + 0.003).map(|f| cards[f.1].id).collect();
     let p = &card.parameters[0];
     let (manoeuvre, kinds) = card.manoeuvre;
-    let half = 1.96 * sd;
+    let half = NORMAL_95 * sd;
     let value = Value { value: size, low: size - half, high: size + half, unit: p.unit.into() };
     Some(Finding {
         effect: card.id,

@@ -9,7 +9,8 @@ use super::predict::{CHANNELS, kind};
 use super::problem::{ChannelValues, Problem};
 use super::select::{Added, Selection};
 use super::structure::NAMES;
-use crate::base::stats::mean;
+use crate::base::stats::{NORMAL_95, mean};
+use crate::model::constants::GRAVITY_M_S2;
 use crate::model::effects::{Card, EffectKind};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -21,10 +22,6 @@ const SURE: f64 = 4.0;
 /// An effect that is rarely flown is also named where at least so many stretches show it by themselves, hold at least this share of all that the flight
 /// tells of it, and its size is so many standard deviations.
 const RARE: (f64, f64, f64) = (4.0, 0.7, 6.0);
-/// 97.5 % quantile of the normal distribution.
-const Z: f64 = 1.96;
-/// Gravity, for turning angles into velocities, m/s2.
-const G: f64 = 9.81;
 
 /// Everything linear about the end of a selection.
 pub struct Judge<'a> {
@@ -268,7 +265,7 @@ impl<'a> Judge<'a> {
                 .flat_map(|a| slopes.iter().map(move |b| (a, b)))
                 .map(|(a, b)| a.1 * b.1 * self.covariance[(a.0, b.0)])
                 .sum();
-            let half = Z * variance.max(0.0).sqrt();
+            let half = NORMAL_95 * variance.max(0.0).sqrt();
             out.insert(
                 name.clone(),
                 Value { value: *value, low: value - half, high: value + half, unit: unit.clone() },
@@ -281,9 +278,9 @@ impl<'a> Judge<'a> {
     fn impact(&self, card: &Card, without: &[f64], change: &ChannelValues) -> f64 {
         let rms = |c: usize| mean(&change[c].iter().map(|x| x * x).collect::<Vec<_>>()).sqrt();
         let sensors: f64 = (0..3)
-            .map(|k| rms(k) * 0.5 * G)
+            .map(|k| rms(k) * 0.5 * GRAVITY_M_S2)
             .chain((3..6).map(rms))
-            .chain((6..9).map(|c| rms(c) * 4.0 * 0.5 * G))
+            .chain((6..9).map(|c| rms(c) * 4.0 * 0.5 * GRAVITY_M_S2))
             .chain((9..12).map(|c| rms(c) * 4.0))
             .fold(0.0, f64::max);
         if matches!(card.kind, EffectKind::Sensor | EffectKind::Random) {

@@ -4,7 +4,7 @@ use super::finding::{Finding, Status, Value};
 use super::predict::{FORCE, RATE};
 use super::problem::Problem;
 use super::select::Selection;
-use crate::base::stats::{mean, robust_sd};
+use crate::base::stats::{NORMAL_95, mean, robust_sd};
 use crate::model::effects::{self, Card};
 use std::collections::BTreeMap;
 
@@ -89,7 +89,7 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
     }
     let n = (whole + half + kept).max(1) as f64;
     let share = (whole + half) as f64 / n;
-    let spread = 1.96 * (share * (1.0 - share) / n).sqrt();
+    let spread = NORMAL_95 * (share * (1.0 - share) / n).sqrt();
     Lost { share, interval: [share - spread, share + spread], whole, half, early }
 }
 
@@ -164,8 +164,8 @@ pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Op
         let m = mean(&blocks_all.iter().map(|b| b[which]).collect::<Vec<_>>());
         (blocks_all.iter().map(|b| (b[which] - m).powi(2)).sum::<f64>() * n / (n - 1.0)).sqrt() * 0.5
     };
-    let half = 1.96 * 0.5 * sigma * spread(0) / near;
-    let half_tau = 1.96 * tau * tau / apart * (spread(0) / near).hypot(spread(1) / far);
+    let half = NORMAL_95 * 0.5 * sigma * spread(0) / near;
+    let half_tau = NORMAL_95 * tau * tau / apart * (spread(0) / near).hypot(spread(1) / far);
     let value = |v: f64, h: f64, unit: &str| Value { value: v, low: v - h, high: v + h, unit: unit.into() };
     let (manoeuvre, kinds) = card.manoeuvre;
     Some(Finding {

@@ -1,6 +1,6 @@
 //! Bounded nonlinear least squares with robust weights, and intervals that hold for coloured noise.
 
-use crate::base::stats::robust_sd;
+use crate::base::stats::{NORMAL_95, robust_sd};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,9 +42,6 @@ impl Solution {
         NORMAL_95 * self.covariance[(i, i)].max(0.0).sqrt()
     }
 }
-
-/// 97.5 % quantile of the normal distribution.
-pub const NORMAL_95: f64 = 1.959_964;
 
 /// Minimises the weighted squares of `residuals(values)`: channels of equally many samples. `blocks` numbers the stretch of
 /// time of each sample: residuals of different stretches are taken for independent, those of one are not.

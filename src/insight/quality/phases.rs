@@ -5,6 +5,7 @@ use crate::base::stats::{mean, median};
 use crate::flight::Log;
 use crate::flight::series::held;
 use crate::flight::spans::{Span, around, joined, length, without};
+use crate::model::constants::GRAVITY_M_S2;
 
 /// Usable spans shorter than this are given up, s.
 pub const SHORTEST_S: f64 = 2.0;
@@ -78,7 +79,7 @@ pub fn ground(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
         let norm = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
         let turning = mean(&rows.iter().map(|row| norm(&row[..3])).collect::<Vec<_>>());
         let force = mean(&rows.iter().map(|row| norm(&row[3..])).collect::<Vec<_>>());
-        let still = turning < 0.3 && (force - 9.81).abs() < 1.0;
+        let still = turning < 0.3 && (force - GRAVITY_M_S2).abs() < 1.0;
         bins.push(([from, from + BIN_S], mean(&effort[first..first + n]), still));
         first += n;
     }

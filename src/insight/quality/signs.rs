@@ -7,13 +7,13 @@ use crate::flight::Log;
 use crate::flight::series::{held, period};
 use crate::flight::spans::{Span, contain};
 use crate::model::attitude::body_axes;
+use crate::model::constants::GRAVITY_M_S2;
 
 const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 /// Delays at which rates are compared with their setpoints, s.
 const DELAYS_S: [f64; 4] = [0.0, 0.02, 0.05, 0.1];
 /// A correlation of this size decides about a sign.
 const CLEAR: f64 = 0.5;
-const GRAVITY: f64 = 9.81;
 
 /// Adds what contradicts itself within the `usable` spans.
 pub fn judge(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
@@ -109,9 +109,10 @@ fn gravity(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
         .filter(|x: &f64| x.is_finite())
         .collect();
     let carried = mean(&lift);
-    if lift.len() > 100 && (carried - GRAVITY).abs() > 0.25 * GRAVITY {
-        let what =
-            format!("specific force turned upright by the attitude is {carried:.1} m/s2 on average, not {GRAVITY}");
+    if lift.len() > 100 && (carried - GRAVITY_M_S2).abs() > 0.25 * GRAVITY_M_S2 {
+        let what = format!(
+            "specific force turned upright by the attitude is {carried:.1} m/s2 on average, not {GRAVITY_M_S2}"
+        );
         problem("frame", "odometry", what, "check the attitude's frames, or the accelerometer's scale", findings);
     }
 }

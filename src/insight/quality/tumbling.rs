@@ -78,7 +78,7 @@ mod tests {
                 rate = -9.0;
             }
             log.setpoint.push(t, [asked, 0.0, 0.0, 0.5]);
-            log.imu.push(t, [rate, 0.0, 0.0, 0.0, 0.0, 9.81]);
+            log.imu.push(t, [rate, 0.0, 0.0, 0.0, 0.0, crate::model::constants::GRAVITY_M_S2]);
         }
         let mut findings = Vec::new();
         let holes = find(&log, &mut findings);

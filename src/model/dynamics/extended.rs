@@ -4,6 +4,7 @@
 use super::{Parameters, State, battery, drag, response};
 use crate::base::lane::{Lane, Real, build, each};
 use crate::model::attitude::{body_axes, compose, dot, normalized, small_rotation};
+use crate::model::constants::CONTROL_S;
 use crate::model::effects::{
     self, Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, EffectValues, RelativeWind, Setpoint,
     ThrustInput,
@@ -17,8 +18,6 @@ pub const LINE: usize = 14;
 const LATEST_S: f64 = 0.12;
 /// Steps are divided until each is at most this long, s.
 const FINE_S: f64 = 0.0021;
-/// Period of the commands, s.
-pub const CONTROL_S: f64 = 0.01;
 
 /// What the extended model needs beyond [`Parameters`].
 #[derive(Clone, Copy, Debug)]

@@ -16,7 +16,7 @@ pub struct Commands<'a> {
 const HEIGHT: u32 = 760;
 /// Height of the line of titles, pixels.
 const TITLES: u32 = 30;
-const SECONDS: f64 = JUDGED_STEPS as f64 * crate::race::env::DT;
+const SECONDS: f64 = JUDGED_STEPS as f64 * crate::model::constants::CONTROL_S;
 
 /// An SVG: roll, pitch and yaw rate and thrust, each from -1 to 1, of the `flights` (in the paper one with weak and one with strong
 /// regularisation); the limits of saturation are marked.

@@ -4,8 +4,8 @@ use super::drawing;
 use super::map::{self, Place};
 use super::plot::{self, BLUE, ORANGE};
 use crate::base::error::Result;
+use crate::model::constants::CONTROL_S;
 use crate::model::track::Track;
-use crate::race::env::DT;
 use crate::race::eval::fly::Moment;
 use crate::race::reference::Reference;
 use plotters::prelude::{ChartBuilder, Color};
@@ -39,7 +39,7 @@ pub fn beside(track: &Track, flights: &[(&str, &[[f64; 6]]); 2], title: &str) ->
         let flat = |p: &[f64; 6]| (p[0], p[1]);
         let speed = |p: &[f64; 6]| p[3].hypot(p[4]).hypot(p[5]);
         let mut chart = map::chart(&above, track, flights.iter().flat_map(|f| f.1.iter().map(flat)), title)?;
-        let longest = flights.iter().map(|f| f.1.len()).max().unwrap_or(1) as f64 * DT;
+        let longest = flights.iter().map(|f| f.1.len()).max().unwrap_or(1) as f64 * CONTROL_S;
         let top = flights.iter().flat_map(|f| f.1.iter().map(speed)).fold(1.0, f64::max);
         let mut speeds = ChartBuilder::on(&below)
             .margin(12)
@@ -50,7 +50,7 @@ pub fn beside(track: &Track, flights: &[(&str, &[[f64; 6]]); 2], title: &str) ->
         plot::mesh(&mut speeds, "time, s", "speed, m/s", [10, 5])?;
         for ((_, path), style) in flights.iter().zip(styles) {
             map::path(&mut chart, path.iter().map(flat), style)?;
-            plot::line(&mut speeds, path.iter().enumerate().map(|(i, p)| (i as f64 * DT, speed(p))), style)?;
+            plot::line(&mut speeds, path.iter().enumerate().map(|(i, p)| (i as f64 * CONTROL_S, speed(p))), style)?;
         }
         map::gates(&mut chart, track)
     })

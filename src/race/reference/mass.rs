@@ -1,6 +1,7 @@
 //! The point mass: what thrust a motion needs, and how much there is.
 
 use crate::base::lane::{Real, build};
+use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::drag::damping_in_body;
 use crate::model::dynamics::{Factors, Parameters};
 use crate::model::thrust::specific_thrust;
@@ -25,7 +26,7 @@ impl Mass {
     /// turns at once might as well fly in it, and none has less.
     pub fn new(vehicle: &Vehicle, voltage: f64) -> Self {
         // No number that is taken from it depends on the length of the step.
-        let p = Parameters::new(vehicle, &Factors::NOMINAL, 0.01);
+        let p = Parameters::new(vehicle, &Factors::NOMINAL, CONTROL_S);
         Mass {
             thrust: specific_thrust(&p.thrust, 1.0, voltage),
             gravity: p.gravity,
@@ -54,7 +55,7 @@ mod tests {
     #[test]
     fn thrust_and_drag_are_the_simulators() {
         let vehicle = Vehicle::load("seed_class").unwrap();
-        let p = Parameters::new(&vehicle, &Factors::NOMINAL, 0.01);
+        let p = Parameters::new(&vehicle, &Factors::NOMINAL, CONTROL_S);
         let mass = Mass::new(&vehicle, 23.0);
         let pushed = force_in_body(&p.thrust, &p.drag, 1.0, 23.0, [0.0; 3]);
         assert_eq!(pushed, [0.0, 0.0, mass.thrust]);

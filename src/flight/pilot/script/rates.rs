@@ -3,6 +3,7 @@
 use super::{Now, Script};
 use crate::base::rng::Sequence;
 use crate::flight::pilot::cascade::Demand;
+use crate::model::constants::CONTROL_S;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
@@ -30,7 +31,7 @@ impl RateSteps {
 
     fn draw(&mut self, axis: usize, now: &Now, rng: &mut Sequence) {
         let ticks = HOLDS[(rng.unit() * HOLDS.len() as f64) as usize];
-        let seconds = ticks * 0.01;
+        let seconds = ticks * CONTROL_S;
         let vertical = now.view.vertical();
         let angle = match axis {
             0 => vertical.y.atan2(vertical.z),
@@ -46,7 +47,7 @@ impl RateSteps {
         // Long and fast at once would lead past the limit on the other side.
         let shorter = if axis < 2 && turn > TILTED + angle.abs() { (TILTED + angle.abs()) / turn } else { 1.0 };
         self.value[axis] = value;
-        self.until[axis] = now.time + (ticks * shorter).ceil() * 0.01 - 0.005;
+        self.until[axis] = now.time + ((ticks * shorter).ceil() - 0.5) * CONTROL_S;
     }
 }
 

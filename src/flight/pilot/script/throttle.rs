@@ -2,8 +2,8 @@
 
 use super::{Now, Script};
 use crate::base::rng::Sequence;
-use crate::flight::pilot::bounds::GRAVITY;
 use crate::flight::pilot::cascade::Demand;
+use crate::model::constants::GRAVITY_M_S2;
 
 /// Random thrust commands, each held for some time.
 #[derive(Debug, Default)]
@@ -37,7 +37,7 @@ impl Script for ThrottleSteps {
             let up = if climb.abs() > DRIFT { climb < 0.0 } else { rng.unit() < 0.5 };
             self.value = rng.uniform(if up { [hover, 1.0] } else { [-1.0, hover] });
             // The thrust curve taken as a line from nothing at -1 through hover.
-            let pull = GRAVITY * (self.value - hover).abs() / (1.0 + hover);
+            let pull = GRAVITY_M_S2 * (self.value - hover).abs() / (1.0 + hover);
             self.until = now.time + rng.uniform(HOLD_S).min(CHANGE / pull.max(0.1)).max(HOLD_S[0]);
         }
         Some(Demand::direct(3, self.value))

@@ -2,6 +2,7 @@
 
 use super::{AFTER, BEFORE};
 use crate::base::error::Result;
+use crate::base::stats::NORMAL_95;
 use crate::insight::diagnose::figures::ChannelFigure;
 use crate::insight::diagnose::figures::profile::{Profile, ProfileLevel};
 use crate::present::report::drawing;
@@ -9,16 +10,13 @@ use crate::present::report::page::unit;
 use crate::present::report::plot::{self, line, mesh, range};
 use plotters::prelude::*;
 
-/// Half of a 95 % interval, in standard errors.
-const HALF: f64 = 1.96;
-
 /// Means with error bars, before and after.
 pub fn draw(channel: &ChannelFigure, profile: &Profile) -> Result<String> {
     type Of = fn(&ProfileLevel) -> [f64; 2];
     let sides: [(Of, RGBColor); 2] = [(|l| l.before, BEFORE), (|l| l.after, AFTER)];
     plot::keyed(320, &super::lines(), |root| {
         let x = range(profile.levels.iter().map(|l| l.signal));
-        let ends = |[mean, error]: [f64; 2]| [mean - HALF * error, mean + HALF * error];
+        let ends = |[mean, error]: [f64; 2]| [mean - NORMAL_95 * error, mean + NORMAL_95 * error];
         let y = range(profile.levels.iter().flat_map(|l| [ends(l.before), ends(l.after)]).flatten().chain([0.0]));
         // Bars of both stand side by side.
         let apart = 0.002 * (x.end - x.start);
