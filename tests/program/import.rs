@@ -1,11 +1,11 @@
 //! Log files as `flight::open` and `racer import` meet them: whole, broken off, wrong, hostile.
 
-use assert_cmd::Command;
+use crate::support::{flight_data, racer};
 use flate2::{Compression, write::GzEncoder};
 use proptest::prelude::*;
 use racer::flight::{self, Log, Opened, Options, Readable};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tempfile::TempDir;
 
 const MAPPING: &str = "time = { field = 't', unit = 'ms' }\n[imu]\ngyro = { fields = ['p', '-q', 'r'], unit = 'deg/s' }\n\
@@ -289,21 +289,11 @@ proptest! {
     }
 }
 
-/// Flight data, where it is there.
-fn data(file: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("RACER_FLIGHT_DATA").map_or("../shared/flight-data".into(), PathBuf::from);
-    let path = root.join(file);
-    if !path.is_file() {
-        println!("skipped: no {} (RACER_FLIGHT_DATA says where flight data is)", path.display());
-        return None;
-    }
-    Some(path)
-}
-
 /// Every column that both have; motors stand in for rotors, which neither has.
 #[test]
 fn raw_blackbox_decodes_to_the_numbers_of_its_csv() {
-    let (Some(raw), Some(csv)) = (data("betaflight/gecko_btfl_002.bbl"), data("betaflight/gecko_btfl_002_log1.csv.gz"))
+    let (Some(raw), Some(csv)) =
+        (flight_data("betaflight/gecko_btfl_002.bbl"), flight_data("betaflight/gecko_btfl_002_log1.csv.gz"))
     else {
         return;
     };
@@ -337,18 +327,6 @@ fn raw_blackbox_decodes_to_the_numbers_of_its_csv() {
     same("imu", &raw.imu, &csv.imu, [rate, rate, rate, 5.1e-5, 5.1e-5, 5.1e-5]);
     same("battery", &raw.battery, &csv.battery, [5.1e-3, 5.1e-3]);
     same("motors", &raw.rotors, &csv.rotors, [5.1e-6; 4]);
-}
-
-struct Ran {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn racer(folder: &Path, args: &[&str]) -> Ran {
-    let output = Command::cargo_bin("racer").unwrap().current_dir(folder).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    Ran { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
 }
 
 #[test]

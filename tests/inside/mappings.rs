@@ -1,17 +1,12 @@
 //! The built-in mappings against the flights that they are for: units, signs and frames.
 
+use crate::support::flight_data;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use racer::flight::{self, Log, Readable, Stream};
-use std::path::PathBuf;
 
 /// The logs of a folder of flight data; none, with a word about it, where they are absent.
 fn logs(folder: &str, files: &[&str]) -> Vec<Log> {
-    let root = std::env::var_os("RACER_FLIGHT_DATA").map_or("../shared/flight-data".into(), PathBuf::from);
-    let folder = root.join(folder);
-    if !folder.is_dir() {
-        println!("skipped: no {} (RACER_FLIGHT_DATA says where flight data is)", folder.display());
-        return Vec::new();
-    }
+    let Some(folder) = flight_data(folder) else { return Vec::new() };
     files.iter().map(|file| flight::open(&folder.join(format!("{file}.csv.gz")), None).unwrap()).collect()
 }
 

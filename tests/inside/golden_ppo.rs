@@ -8,7 +8,7 @@ use racer::learn::ppo::update::{Batch, Hyper, Losses, Updater};
 use serde_json::Value;
 
 fn golden() -> Value {
-    serde_json::from_str(include_str!("golden/ppo.json")).expect("JSON")
+    serde_json::from_str(include_str!("../golden/ppo.json")).expect("JSON")
 }
 
 /// All numbers of a nested array, in order.

@@ -1,6 +1,6 @@
 //! The commands as a user meets them: exit codes, what is printed where, what is left on disk.
 
-use assert_cmd::Command;
+use crate::support::racer;
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
@@ -26,18 +26,6 @@ const TINY: [&str; 18] = [
     "--out",
     "run",
 ];
-
-struct Ran {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn racer(folder: &Path, args: &[&str]) -> Ran {
-    let output = Command::cargo_bin("racer").unwrap().current_dir(folder).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    Ran { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
-}
 
 fn trained() -> TempDir {
     let folder = tempfile::tempdir().unwrap();

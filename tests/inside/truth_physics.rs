@@ -1,14 +1,13 @@
 //! The independent simulator obeys physics, the pilot keeps its box and covers the ranges, and the crate's own model
 //! agrees with the simulator.
 
-mod truth;
-
+use crate::truth;
+use crate::truth::{State, Vehicle, drag, integrate, thrust};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 use racer::flight::Log;
 use racer::flight::pilot::bounds::{HEIGHT_M, REACH_M};
 use racer::model::dynamics::{self, Factors, Parameters};
 use std::f64::consts::{PI, TAU};
-use truth::{State, Vehicle, drag, integrate, thrust};
 
 const DT: f64 = 0.0005;
 

@@ -1,14 +1,12 @@
 //! From a flight to a policy by the commands a user types, and the same flight cut off and contradicting itself.
 
-use assert_cmd::Command;
+use crate::support::{self, Ran};
 use serde_json::Value;
 use std::path::Path;
 
 fn racer(folder: &Path, args: &str) -> (i32, String, String) {
-    let output =
-        Command::cargo_bin("racer").unwrap().current_dir(folder).args(args.split_whitespace()).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    let Ran { code, out, err } = support::racer(folder, &args.split_whitespace().collect::<Vec<_>>());
+    (code, out, err)
 }
 
 fn number(value: &Value) -> f64 {
@@ -67,7 +65,7 @@ fn a_log_that_breaks_off_or_contradicts_itself() {
     assert!(code == 3 && folder.path().join("cut.toml").is_file(), "{err}");
 
     // The pitch setpoint with the wrong sign, by a mapping that says so.
-    let mapping = include_str!("../configs/mappings/canonical.toml").replace("\"body_rate.y\"", "\"-body_rate.y\"");
+    let mapping = include_str!("../../configs/mappings/canonical.toml").replace("\"body_rate.y\"", "\"-body_rate.y\"");
     std::fs::write(folder.path().join("wrong.toml"), mapping).unwrap();
     let (code, _, err) = run("identify flight.mcap --mapping wrong.toml --out wrong_vehicle.toml");
     assert!(code == 2 && err.contains("pitch rate goes against its setpoint"), "{err}");

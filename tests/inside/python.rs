@@ -3,28 +3,15 @@
 //! `RACER_PYTHON` names the interpreter (default `python3`). Where it or the packages are missing, the tests say so and pass,
 //! unless `RACER_REQUIRE_PYTHON` is set.
 
+use crate::support::python;
 use racer::flight::mcap::tables;
 use racer::flight::{Log, Readable, VehicleRecord, write};
 use serde_json::{Map, Value, json};
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
 
-fn python(arguments: &[&Path]) -> Option<Output> {
-    let interpreter = std::env::var_os("RACER_PYTHON").unwrap_or("python3".into());
-    let available = Command::new(&interpreter).args(["-c", "import mcap_ros2"]).output();
-    if !available.is_ok_and(|output| output.status.success()) {
-        let missing = "python3 with the packages mcap and mcap-ros2-support";
-        assert!(std::env::var_os("RACER_REQUIRE_PYTHON").is_none(), "{missing} is required");
-        // Past the capture of what tests print.
-        std::io::stderr().write_all(format!("SKIPPED: {missing} is not there\n").as_bytes()).unwrap();
-        return None;
-    }
-    let output = Command::new(&interpreter).args(arguments).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    Some(output)
-}
+/// The package `mcap-ros2-support`, which brings `mcap`.
+const NEEDED: &str = "mcap_ros2";
 
 fn log() -> Log {
     let mut log = Log {
@@ -48,8 +35,8 @@ fn python_reads_what_racer_wrote() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("log.mcap");
     std::fs::write(&path, write::mcap(&log()).unwrap()).unwrap();
-    let Some(output) = python(&[Path::new("tests/python/read.py"), &path]) else { return };
-    let read: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let Some(output) = python(NEEDED, &[Path::new("tests/python/read.py"), &path]) else { return };
+    let read: Value = serde_json::from_slice(&output).unwrap();
     assert_eq!(read["profile"], "ros2");
     let vehicle = &read["metadata"]["racer.vehicle"];
     assert_eq!(vehicle["mass_kg"], "0.75");
@@ -107,7 +94,7 @@ fn racer_reads_what_python_wrote() {
     let dir = TempDir::new().unwrap();
     let (path, definitions) = (dir.path().join("log.mcap"), dir.path().join("schemas.json"));
     std::fs::write(&definitions, schemas().to_string()).unwrap();
-    let Some(_) = python(&[Path::new("tests/python/write.py"), &definitions, &path]) else { return };
+    let Some(_) = python(NEEDED, &[Path::new("tests/python/write.py"), &definitions, &path]) else { return };
     let read = tables(&std::fs::read(&path).unwrap(), &|_| true).unwrap();
     assert_eq!(read.readable, Readable::Whole);
     assert_eq!(read.vehicle, log().vehicle);

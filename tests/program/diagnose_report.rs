@@ -1,11 +1,11 @@
 //! `racer diagnose --report` and `--svg`: what is written, and that nothing is written over.
 
-use assert_cmd::Command;
+use crate::support;
 use std::path::Path;
 
 fn racer(folder: &Path, args: &str) -> (i32, String) {
-    let output = Command::cargo_bin("racer").unwrap().current_dir(folder).args(args.split(' ')).output().unwrap();
-    (output.status.code().unwrap(), String::from_utf8(output.stderr).unwrap())
+    let ran = support::racer(folder, &args.split(' ').collect::<Vec<_>>());
+    (ran.code, ran.err)
 }
 
 #[test]

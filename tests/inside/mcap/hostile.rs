@@ -1,6 +1,6 @@
 //! Files cut short, damaged, or made to harm.
 
-use crate::foreign;
+use super::foreign;
 use mcap::records::MessageHeader;
 use mcap::{Compression, MAGIC, WriteOptions};
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ fn prefix(bytes: &[u8]) -> (usize, u64, String) {
 
 #[test]
 fn every_cut_leaves_a_prefix() {
-    let log = crate::log(400);
+    let log = super::log(400);
     let whole = write::mcap(&log).unwrap();
     let mut least = 0;
     for end in (MAGIC.len()..whole.len()).step_by(97) {
@@ -62,7 +62,7 @@ fn a_cut_compressed_chunk_gives_its_beginning() {
 
 #[test]
 fn a_flipped_bit_is_found() {
-    let mut bytes = write::mcap(&crate::log(400)).unwrap();
+    let mut bytes = write::mcap(&super::log(400)).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
     let (_, good, _) = prefix(&bytes);
@@ -150,7 +150,7 @@ proptest! {
         end in any::<prop::sample::Index>(),
     ) {
         static FILES: std::sync::LazyLock<[Vec<u8>; 4]> = std::sync::LazyLock::new(|| {
-            [foreign::json(), foreign::idl(), foreign::protobuf(), write::mcap(&crate::log(100)).unwrap()]
+            [foreign::json(), foreign::idl(), foreign::protobuf(), write::mcap(&super::log(100)).unwrap()]
         });
         let mut bytes = FILES[which].clone();
         for (at, value) in changes {

@@ -3,6 +3,7 @@
 //! `RACER_BROWSER` names the browser (default: `chromium`, `chromium-browser` or `google-chrome`), `RACER_PYTHON` the interpreter.
 //! Where one is missing, its test says so and passes, unless `RACER_REQUIRE_BROWSER` or `RACER_REQUIRE_PYTHON` is set.
 
+use crate::support::{python, skipped};
 use racer::base::lane::Level;
 use racer::base::rng::{Philox, Stream};
 use racer::flight::Log;
@@ -19,9 +20,8 @@ use racer::race::env::reset::Place;
 use racer::race::eval::fly::fly;
 use racer::race::eval::spread::spread;
 use serde_json::Value;
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 use tempfile::TempDir;
 
 /// A log of a vehicle that is led through every gate of a track, along its reset spline, at 8 m/s.
@@ -85,12 +85,6 @@ fn figures_of_flights_are_drawn() {
     assert!(["weak", "strong", "roll rate", "thrust", "time, s"].iter().all(|text| figure.contains(text)));
 }
 
-fn told(missing: &str, required: &str) {
-    assert!(std::env::var_os(required).is_none(), "{missing} is required");
-    // Past the capture of what tests print.
-    std::io::stderr().write_all(format!("SKIPPED: {missing} is not there\n").as_bytes()).unwrap();
-}
-
 /// The page's document after it has run in a browser, `script` after all of its own.
 fn browsed(page: &str, script: &str) -> Option<String> {
     let names = ["chromium", "chromium-browser", "google-chrome"].map(String::from);
@@ -98,7 +92,7 @@ fn browsed(page: &str, script: &str) -> Option<String> {
     let works = |name: &&String| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
     let candidates = asked.unwrap_or(names.into());
     let Some(browser) = candidates.iter().find(works) else {
-        told("chromium", "RACER_REQUIRE_BROWSER");
+        skipped("chromium", "RACER_REQUIRE_BROWSER");
         return None;
     };
     let folder = TempDir::new().unwrap();
@@ -173,15 +167,8 @@ fn others_read_the_mcap_file() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("replay.mcap");
     std::fs::write(&path, mcap(&untrained(2)).unwrap()).unwrap();
-    let interpreter = std::env::var_os("RACER_PYTHON").unwrap_or("python3".into());
-    let python = |arguments: &[&Path]| Command::new(&interpreter).args(arguments).output();
-    let available = Command::new(&interpreter).args(["-c", "import mcap, jsonschema"]).output();
-    if !available.is_ok_and(|output: Output| output.status.success()) {
-        return told("python3 with the packages mcap and jsonschema", "RACER_REQUIRE_PYTHON");
-    }
-    let output = python(&[Path::new("tests/python/replay.py"), &path]).unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let Some(output) = python("mcap, jsonschema", &[Path::new("tests/python/replay.py"), &path]) else { return };
+    let found: Value = serde_json::from_slice(&output).unwrap();
     assert_eq!(found["invalid"], serde_json::json!([]));
     for (topic, schema) in [
         ("/tf", "foxglove.FrameTransforms"),

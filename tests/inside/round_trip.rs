@@ -1,7 +1,6 @@
 //! Random vehicles, flown in the independent simulator and identified from what its sensors logged.
 
-mod truth;
-
+use crate::truth;
 use racer::insight::identify::estimate::Estimate;
 use racer::insight::identify::result::Identification;
 use racer::insight::identify::{Options, identify};
@@ -113,7 +112,8 @@ fn a_random_vehicle_is_found_again() {
     assert!(4 * inside >= 3 * all, "{inside} of {all} intervals hold");
 }
 
-/// `cargo test --test round_trip -- --ignored write`: a log to try `racer identify` on, and the vehicle that flew it, in target/truth.
+/// `cargo test --test inside -- --ignored round_trip::write`: a log to try `racer identify` on, and the vehicle that flew
+/// it, in target/truth.
 #[test]
 #[ignore = "writes files"]
 fn write_a_log_and_its_vehicle() {
@@ -125,7 +125,8 @@ fn write_a_log_and_its_vehicle() {
     std::fs::write(folder.join("true.toml"), toml::to_string(&vehicle.in_racer()).unwrap()).unwrap();
 }
 
-/// `cargo test --test round_trip -- --ignored --nocapture many`, with the number of vehicles in DRAWS (default 40).
+/// `cargo test --test inside -- --ignored --nocapture round_trip::many`, with the number of vehicles in
+/// DRAWS (default 40).
 #[test]
 #[ignore = "minutes; its table is in RESULTS.md"]
 fn many_draws() {

@@ -4,8 +4,8 @@ use racer::base::document::Document;
 use racer::model::track::{Gate, GateKind, Track, spline::Spline};
 use racer::model::vehicle::Vehicle;
 
-const A2RL: &str = include_str!("../tracks/a2rl_s2.toml");
-const SEED: &str = include_str!("../configs/vehicles/seed_class.toml");
+const A2RL: &str = include_str!("../../tracks/a2rl_s2.toml");
+const SEED: &str = include_str!("../../configs/vehicles/seed_class.toml");
 
 fn refuses_track(from: &str, to: &str, parts: &[&str]) {
     assert!(A2RL.contains(from), "{from}");

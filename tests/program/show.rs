@@ -1,20 +1,7 @@
 //! `racer track`, `racer replay` and `racer eval --sensitivity` as a user meets them.
 
-use assert_cmd::Command;
+use crate::support::racer;
 use serde_json::Value;
-use std::path::Path;
-
-struct Ran {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn racer(folder: &Path, args: &[&str]) -> Ran {
-    let output = Command::cargo_bin("racer").unwrap().current_dir(folder).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    Ran { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
-}
 
 #[test]
 fn a_track_is_shown() {

@@ -1,16 +1,14 @@
 //! Effects hidden in flights of the independent simulator have to be found, and nothing where nothing is. The benchmark of the same name
 //! (`cargo bench --bench hidden_effects`) does so hundreds of times.
 
-mod truth;
-
+use crate::truth::Vehicle;
+use crate::truth::effects::{Hidden, outside};
+use crate::truth::hidden::{Setting, Style, fly};
 use racer::insight::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
 use racer::insight::diagnose::{Diagnosed, diagnose};
 use racer::insight::quality::check;
 use rand::SeedableRng;
 use rand::rngs::StdRng;
-use truth::Vehicle;
-use truth::effects::{Hidden, outside};
-use truth::hidden::{Setting, Style, fly};
 
 const SECONDS: f64 = 120.0;
 

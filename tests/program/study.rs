@@ -1,7 +1,7 @@
 //! Studies as a user meets them: what a file spans, what is refused before anything starts, and that interruptions leave no
 //! trace in the tables.
 
-use assert_cmd::Command;
+use crate::support::racer;
 use racer::base::check::BadInput;
 use racer::base::document::Document;
 use racer::present::study::Study;
@@ -31,18 +31,6 @@ ppo.rollout = [16, 32]
 fn planned(text: &str) -> Result<Planned, BadInput> {
     let document = Document::parse("study.toml", text)?;
     plan("study.toml", &document, &Study::of(&document)?, Budget::default())
-}
-
-struct Ran {
-    code: i32,
-    out: String,
-    err: String,
-}
-
-fn racer(folder: &Path, args: &[&str]) -> Ran {
-    let output = Command::cargo_bin("racer").unwrap().current_dir(folder).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    Ran { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
 }
 
 fn with_study(text: &str) -> tempfile::TempDir {

@@ -1,7 +1,6 @@
 //! A good log, damaged in every way that real ones are: each damage is found, named, and kept out of what is used.
 
-mod truth;
-
+use crate::truth;
 use racer::flight::spans::{contain, length};
 use racer::flight::{Log, Readable};
 use racer::insight::quality::{Finding, Quality, Severity, check};

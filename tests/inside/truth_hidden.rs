@@ -1,18 +1,17 @@
 //! What the independent simulator hides does what it says: each effect against numbers worked out by hand.
 
-mod truth;
-
+use crate::truth;
+use crate::truth::effects::{Hidden, catalogue, clutter, drifted, outside, unmatched};
+use crate::truth::hidden::link::Link;
+use crate::truth::hidden::motion::{Inputs, flow, slope, specific_force};
+use crate::truth::hidden::motors::Controller;
+use crate::truth::hidden::weather::{Air, Weather};
+use crate::truth::hidden::{Craft, Setting, Style, World, battery, fly, inflow, inner};
+use crate::truth::{State, Vehicle, integrate};
 use nalgebra::{Vector3, Vector4};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 use std::f64::consts::PI;
-use truth::effects::{Hidden, catalogue, clutter, drifted, outside, unmatched};
-use truth::hidden::link::Link;
-use truth::hidden::motion::{Inputs, flow, slope, specific_force};
-use truth::hidden::motors::Controller;
-use truth::hidden::weather::{Air, Weather};
-use truth::hidden::{Craft, Setting, Style, World, battery, fly, inflow, inner};
-use truth::{State, Vehicle, integrate};
 
 const DT: f64 = 0.0005;
 
@@ -422,7 +421,7 @@ fn everything_that_can_be_hidden_flies_and_shows() {
     }
 }
 
-/// `cargo test --test truth_hidden -- --ignored --nocapture largest`
+/// `cargo test --test inside -- --ignored --nocapture truth_hidden::largest`
 #[test]
 #[ignore = "a minute; prints a table"]
 fn the_largest_sizes_fly_too() {

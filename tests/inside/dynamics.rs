@@ -26,7 +26,7 @@ fn turn_deg(a: [f64; 4], b: [f64; 4]) -> f64 {
 
 /// Errors after `n` steps of the reference flight: m, m/s, deg, and the largest of u and V.
 fn errors(n: usize) -> [f64; 4] {
-    let golden: Value = serde_json::from_str(include_str!("golden/dynamics.json")).expect("JSON");
+    let golden: Value = serde_json::from_str(include_str!("../golden/dynamics.json")).expect("JSON");
     let vehicle = Vehicle::load("seed_class").expect("embedded");
     let parameters = Parameters::new(&vehicle, &Factors::NOMINAL, 0.01);
     let mut s = state(numbers(&golden["initial"]));

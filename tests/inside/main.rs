@@ -1,0 +1,26 @@
+//! The parts of the library, each against numbers and rules known without it.
+
+mod config;
+mod dynamics;
+mod effects;
+mod fly;
+mod golden_ppo;
+mod gradients;
+mod hidden_effects;
+mod lane;
+mod mappings;
+mod mcap;
+mod python;
+mod quality;
+mod race;
+mod reference;
+mod replay;
+mod round_trip;
+#[path = "../support/mod.rs"]
+mod support;
+mod track;
+mod training;
+#[path = "../truth/mod.rs"]
+mod truth;
+mod truth_hidden;
+mod truth_physics;

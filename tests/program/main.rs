@@ -1,0 +1,10 @@
+//! The program as its users meet it: what they type, what is printed where, what is left on disk.
+
+mod cli;
+mod diagnose_report;
+mod identify;
+mod import;
+mod show;
+mod study;
+#[path = "../support/mod.rs"]
+mod support;
