@@ -9,3 +9,4 @@ pub mod lane;
 pub mod peak;
 pub mod rng;
 pub mod stats;
+pub mod threads;

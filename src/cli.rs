@@ -11,14 +11,17 @@ mod fly;
 mod identify;
 mod import;
 mod interrupt;
-mod pool;
+mod logs;
 mod progress;
 mod replay;
 mod report;
+mod sensitivity;
 mod study;
 mod table;
 mod track;
 mod train;
+mod training;
+mod values;
 
 use crate::base::check::BadInput;
 use crate::base::error::Error;

@@ -4,5 +4,7 @@ pub mod bench;
 pub mod colour;
 pub mod replay;
 pub mod report;
+pub mod retrain;
 pub mod run;
 pub mod study;
+pub mod train;

@@ -6,3 +6,4 @@ pub mod eval;
 pub mod heat;
 pub mod reference;
 pub mod snapshot;
+pub mod train;

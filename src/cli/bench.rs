@@ -1,6 +1,6 @@
 //! `racer bench`: how fast this machine is.
 
-use super::pool::threads;
+use super::values::threads;
 use super::{Outcome, tell};
 use crate::base::lane::Level;
 use crate::present::bench::{Figures, Pair, measure};
@@ -16,7 +16,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     /// Threads of the second column [default: all processors]
-    #[arg(long, value_parser = super::pool::parse_threads)]
+    #[arg(long, value_parser = super::values::parse_threads)]
     threads: Option<usize>,
     /// Time to measure for, about, s
     #[arg(long, allow_negative_numbers = true, default_value_t = 20.0, value_parser = parse_seconds)]

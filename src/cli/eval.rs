@@ -1,12 +1,10 @@
 //! `racer eval`: what a policy is worth.
 
-mod sensitivity;
-
-use super::pool::{pool, threads};
-use super::{Outcome, table, tell};
+use super::{Outcome, sensitivity, table, tell};
 use crate::base::check::BadInput;
 use crate::base::fsio::Reserved;
 use crate::base::lane::Level;
+use crate::base::threads;
 use crate::learn::nn::Network;
 use crate::model::vehicle::Vehicle;
 use crate::present::run::{self, Found};
@@ -49,7 +47,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Threads [default: all processors]; changes the speed, not the result
-    #[arg(long, value_parser = super::pool::parse_threads)]
+    #[arg(long, value_parser = super::values::parse_threads)]
     threads: Option<usize>,
 }
 
@@ -114,10 +112,10 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let vehicle = other.as_ref().unwrap_or(&about.vehicle);
     let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
     let fly = |place| benchmark(Level::best(), &race, &about.track, &network, place, &config).0;
-    let report = pool(threads(args.threads))?.install(|| Report {
+    let report = threads::on(args.threads, || Report {
         fixed: (args.start != Start::Random).then(|| fly(Place::Pad)),
         random: (args.start != Start::Fixed).then(|| fly(Place::Spline)),
-    });
+    })?;
     let pace = Pace::of(&report, &about.track, vehicle);
     let content = File {
         snapshot: found.snapshot.display().to_string(),
@@ -157,7 +155,7 @@ fn sensitive(
     let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
     let default = || beside(found, &format!("sensitivity-{}{}.json", named(other), config.agents));
     let out = Reserved::new(&args.out.clone().unwrap_or_else(default))?;
-    let flown = sensitivity::Flown { race: &race, track: &about.track, network, config };
+    let flown = sensitivity::Case { race: &race, track: &about.track, network, config };
     let snapshot = found.snapshot.display().to_string();
     sensitivity::run(&snapshot, &flown, args.threads, args.json, out)
 }

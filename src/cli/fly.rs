@@ -37,7 +37,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME|FILE", conflicts_with = "pilot")]
     track: Option<String>,
     /// Longest flight, s [default: 60; 300 for the pilot]
-    #[arg(long, allow_negative_numbers = true, value_parser = parse_seconds)]
+    #[arg(long, allow_negative_numbers = true, value_parser = super::values::parse_seconds)]
     seconds: Option<f64>,
     /// Sensors: a name or a file, looked for here, in configs/sensors/ and among the built-in ones
     #[arg(long, value_name = "NAME|FILE", default_value = "typical")]
@@ -69,14 +69,6 @@ fn help() -> String {
 const SHORTEST_PILOT_S: f64 = 40.0;
 /// Thrust over weight of the vehicles that the pilot is made for.
 const PILOT_THRUST: [f64; 2] = [2.5, 8.0];
-
-/// The value of `--seconds`.
-pub fn parse_seconds(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
-        _ => Err("expected 0.1 to 3600".into()),
-    }
-}
 
 /// Flies, records and writes.
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {

@@ -1,18 +1,16 @@
 //! `racer identify`: a vehicle from its flights.
 
-use super::{Outcome, columns, findings, tell};
+use super::{Outcome, columns, logs, progress, tell};
 use crate::base::check::{BadInput, Check};
+use crate::base::encode;
 use crate::base::fsio::Reserved;
-use crate::flight::{self, Readable};
 use crate::insight::identify::document::{CheckedLog, Document};
 use crate::insight::identify::estimate::Estimate;
 use crate::insight::identify::result::Identification;
-use crate::insight::identify::{AXES, Options, identify};
-use crate::insight::quality::{Finding, Quality, Severity, check};
+use crate::insight::identify::{AXES, FORCE_CUTOFF_HZ, Options, RATE_CUTOFF_HZ, identify, refuse};
 use crate::model::vehicle::Vehicle;
 use crate::present::report;
-use indicatif::{ProgressBar, ProgressStyle};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Identify a vehicle from flight logs
 #[derive(Debug, clap::Args)]
@@ -49,10 +47,10 @@ pub struct Args {
     #[arg(long, value_name = "R,P,Y", value_parser = parse_rates)]
     full_rates: Option<[f64; 3]>,
     /// Cut-off of the zero-phase filter on measured and predicted rates, Hz
-    #[arg(long, value_name = "HZ", default_value_t = 100.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", default_value_t = RATE_CUTOFF_HZ, allow_negative_numbers = true)]
     rate_cutoff: f64,
     /// The same on specific force, where vibration is
-    #[arg(long, value_name = "HZ", default_value_t = 30.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", default_value_t = FORCE_CUTOFF_HZ, allow_negative_numbers = true)]
     force_cutoff: f64,
 }
 
@@ -82,16 +80,10 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let options = options(args)?;
     let reserve = |path: &Option<PathBuf>| path.as_deref().map(Reserved::new).transpose();
     let (out, json, page) = (Reserved::new(&args.out)?, reserve(&args.json)?, reserve(&args.report)?);
-    let bar = ProgressBar::new(100);
-    bar.set_style(ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}")?);
-
-    let mut checked: Vec<Quality> = Vec::new();
-    for path in &args.logs {
-        bar.set_message(format!("reading {}", path.display()));
-        checked.push(read(path, args.mapping.as_deref(), &bar)?);
-    }
+    let bar = progress::bar();
+    let checked = logs::read(&args.logs, args.mapping.as_deref(), &bar)?;
     if !args.despite_problems {
-        refuse_problems(&checked)?;
+        refuse::problems(&checked)?;
     }
     let mut found = identify(checked.clone(), &options, &mut |step, share| {
         bar.set_position((100.0 * share) as u64);
@@ -101,48 +93,25 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let stem = args.out.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     found.vehicle.name = args.name.clone().unwrap_or(stem);
 
-    let nothing = found.channels.is_empty();
     super::print(&text(&found))?;
-    if nothing {
-        let why = "no parameter could be told; see the table above";
-        return Err(
-            BadInput::new("the logs", why, "at least one response", "`racer check` names what is missing").into()
-        );
-    }
-    if let Err(invalid) = found.vehicle.check() {
-        anyhow::bail!("the identified vehicle cannot fly: {}: {}", invalid.key, invalid.found);
-    }
-    let logs = checked.iter().map(|quality| CheckedLog {
+    refuse::nothing(&found)?;
+    let documents = checked.iter().map(|quality| CheckedLog {
         name: &quality.log.name,
         streams: &quality.streams,
         findings: &quality.findings,
     });
-    let logs: Vec<_> = logs.collect();
+    let documents: Vec<_> = documents.collect();
     if let Some(page) = page {
-        let written = page.write(report::identification::page(&found, &logs)?.as_bytes())?;
+        let written = page.write(report::identification::page(&found, &documents)?.as_bytes())?;
         tell(&format!("report in {}", written.display()));
     }
     if let Some(json) = json {
-        let document = serde_json::to_string_pretty(&Document::new(&found, logs))?;
-        tell(&format!("figures in {}", json.write(format!("{document}\n").as_bytes())?.display()));
+        let document = encode::json("the identification", &Document::new(&found, documents))?;
+        tell(&format!("figures in {}", json.write(document.as_bytes())?.display()));
     }
-    let written = out.write(toml::to_string(&found.vehicle)?.as_bytes())?;
+    let written = out.write(encode::toml("the vehicle", &found.vehicle)?.as_bytes())?;
     tell(&format!("vehicle in {0}: racer train --vehicle {0}", written.display()));
-    let damaged = checked.iter().any(|quality| quality.log.readable != Readable::Whole);
-    Ok(if damaged { Outcome::Damaged } else { Outcome::Done })
-}
-
-/// A log that contradicts itself would give a vehicle that is wrong.
-fn refuse_problems(logs: &[Quality]) -> Result<(), BadInput> {
-    for quality in logs {
-        let wrong = |finding: &&Finding| finding.severity == Severity::Problem && finding.stream != "file";
-        if let Some(finding) = quality.findings.iter().find(wrong) {
-            let expected = "a log without problems";
-            let advice = format!("{}, or use the log all the same with --despite-problems", finding.so);
-            return Err(BadInput::new(&quality.log.name, &finding.what, expected, advice));
-        }
-    }
-    Ok(())
+    Ok(if logs::damaged(&checked) { Outcome::Damaged } else { Outcome::Done })
 }
 
 fn options(args: &Args) -> Result<Options, BadInput> {
@@ -155,19 +124,6 @@ fn options(args: &Args) -> Result<Options, BadInput> {
     };
     options.check().map_err(|invalid| BadInput::at("command line", invalid))?;
     Ok(options)
-}
-
-/// A log, checked, with what was found printed as remarks.
-fn read(path: &Path, mapping: Option<&str>, bar: &ProgressBar) -> anyhow::Result<Quality> {
-    let opened = flight::open_with(path, flight::Options { mapping, flight: None })?;
-    let quality = check(&opened.log);
-    bar.suspend(|| {
-        tell(&opened.log.name);
-        opened.remarks.iter().for_each(|remark| tell(remark));
-        tell(&findings::findings(&quality.findings));
-        tell(&format!("{}\n", findings::usable(&opened.log, &quality)));
-    });
-    Ok(quality)
 }
 
 /// The result as the paper's Table 1, and everything else below it.

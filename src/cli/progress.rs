@@ -47,13 +47,21 @@ impl Progress {
             None => {}
         }
     }
+}
 
-    /// Leaves the last state on the screen.
-    pub fn finish(self) {
-        if let Some(bar) = self.bar {
+/// Leaves the last state on the screen.
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
             bar.abandon();
         }
     }
+}
+
+/// A bar in percent, for work that says how far it is.
+pub fn bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:24} {percent:>3} %  {msg}");
+    ProgressBar::new(100).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
 fn text(status: &Status) -> String {

@@ -27,7 +27,7 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Longest flight of a policy, s [default: until each vehicle has flown a lap, at most 30 s]
-    #[arg(long, allow_negative_numbers = true, value_parser = super::fly::parse_seconds)]
+    #[arg(long, allow_negative_numbers = true, value_parser = super::values::parse_seconds)]
     seconds: Option<f64>,
     /// Vehicles that fly side by side: one nominal, the others randomised as in an evaluation
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=MOST as i64))]

@@ -1,15 +1,11 @@
 //! `racer report`: a folder as a page and figures.
 
-mod run;
-mod study;
-
 use super::{Outcome, tell};
-use crate::base::check::BadInput;
+use crate::base::error::Error;
 use crate::base::fsio::{new_folder, write_new};
+use crate::present::report::folder::draw;
 use crate::present::run::free;
-use crate::present::run::metrics::METRICS;
-use crate::present::study::folder::PLAN;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Draw the figures of a run or of a study, and one page with all of them
 #[derive(Debug, clap::Args)]
@@ -38,27 +34,14 @@ Examples:
 /// The page's name.
 const PAGE: &str = "report.html";
 
-/// A page, and its figures by the names of their files.
-pub struct Drawn {
-    pub page: String,
-    pub figures: Vec<(String, String)>,
-}
-
 /// Draws what the folder holds and writes it.
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {
-    let drawn = match kind(&args.folder)? {
-        Kind::Study if args.beside.is_some() => {
-            let expected = "the folder of a run, whose commands another one's can stand beside";
-            return Err(BadInput::new("--beside", "the folder of a study", expected, "name one of its runs").into());
-        }
-        Kind::Study => study::draw(&args.folder)?,
-        Kind::Run => run::draw(&args.folder, args.beside.as_deref())?,
-    };
+    let drawn = draw(&args.folder, args.beside.as_deref())?;
     let out = args.out.clone().unwrap_or_else(|| free(&args.folder.join("report")));
     new_folder(&out)?;
     let write = |name: &str, text: &str| {
         let path = out.join(name);
-        write_new(&path, text.as_bytes()).map_err(|e| anyhow::anyhow!("{} could not be written: {e}", path.display()))
+        write_new(&path, text.as_bytes()).map_err(Error::write(&path))
     };
     for (name, svg) in &drawn.figures {
         write(name, svg)?;
@@ -67,23 +50,4 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     tell(&format!("{} figures beside the page", drawn.figures.len()));
     super::print(&out.join(PAGE).display().to_string())?;
     Ok(Outcome::Done)
-}
-
-/// What a folder can hold.
-enum Kind {
-    Run,
-    Study,
-}
-
-fn kind(folder: &Path) -> Result<Kind, BadInput> {
-    let has = |name: &str| folder.join(name).is_file();
-    const EXPECTED: &str = "the folder of a run or of a study";
-    if has(PLAN) {
-        return Ok(Kind::Study);
-    }
-    if has(METRICS) {
-        return Ok(Kind::Run);
-    }
-    let found = if folder.is_dir() { "another folder" } else { "nothing of that name" };
-    Err(BadInput::new(folder.display(), found, EXPECTED, "`racer train` and `racer study` make one"))
 }

@@ -8,8 +8,8 @@ mod work;
 use super::{Outcome, columns, interrupt, tell};
 use crate::base::check::BadInput;
 use crate::base::fsio::Reserved;
+use crate::base::threads::processors;
 use crate::present::run::RUNS;
-use crate::present::run::provenance::processors;
 use crate::present::study::folder::Folder;
 use crate::present::study::plan::{Budget, Planned, plan};
 use crate::present::study::shard::Shard;
@@ -31,10 +31,10 @@ pub struct Args {
     #[arg(long, value_name = "K/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
     /// Runs at a time, each with its share of the processors [default: as the file says, else 1]
-    #[arg(long, value_parser = super::pool::parse_threads)]
+    #[arg(long, value_parser = super::values::parse_threads)]
     jobs: Option<usize>,
     /// Processors to share among the runs [default: all]
-    #[arg(long, value_parser = super::pool::parse_threads)]
+    #[arg(long, value_parser = super::values::parse_threads)]
     threads: Option<usize>,
     /// Train each run for so many minutes, whatever the file says
     #[arg(long, allow_negative_numbers = true, conflicts_with = "steps")]

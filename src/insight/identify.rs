@@ -12,6 +12,7 @@ mod fill;
 pub mod flight;
 pub mod force;
 pub mod rates;
+pub mod refuse;
 pub mod result;
 pub mod solve;
 
@@ -22,6 +23,10 @@ use crate::model::vehicle::Vehicle;
 use data::Data;
 use rayon::prelude::*;
 use result::Identification;
+
+/// Usual cut-offs: above what a vehicle's rates can follow, and below where the rotors shake the accelerometer.
+pub const RATE_CUTOFF_HZ: f64 = 100.0;
+pub const FORCE_CUTOFF_HZ: f64 = 30.0;
 
 /// How to identify.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +41,14 @@ pub struct Options {
     pub rate_cutoff_hz: f64,
     /// The same for specific force.
     pub force_cutoff_hz: f64,
+}
+
+impl Options {
+    /// The base vehicle lends what the logs cannot tell; everything else as usual.
+    pub fn new(base: Vehicle) -> Self {
+        let (rate_cutoff_hz, force_cutoff_hz) = (RATE_CUTOFF_HZ, FORCE_CUTOFF_HZ);
+        Self { base, mass_kg: None, max_rate_rad_s: None, rate_cutoff_hz, force_cutoff_hz }
+    }
 }
 
 impl Check for Options {

@@ -3,6 +3,8 @@
 pub mod commands;
 pub mod diagnosis;
 pub mod figures;
+mod flown;
+pub mod folder;
 pub mod identification;
 pub mod lap;
 mod map;

@@ -13,7 +13,7 @@ use crate::learn::nn::Network;
 use crate::model::track::Track;
 use crate::race::env::Race;
 use crate::race::env::reset::Place;
-use fly::{Flights, fly};
+use fly::{Flights, Moment, fly};
 use score::{Benchmark, score};
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +43,19 @@ pub struct Report {
     /// From points along the reset spline.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub random: Option<Benchmark>,
+}
+
+/// [`benchmark`] from both start distributions, and the nominal vehicle's flight from the pad.
+pub fn both_starts(
+    level: Level,
+    race: &Race,
+    track: &Track,
+    network: &Network<f32>,
+    config: &EvalConfig,
+) -> (Report, Vec<Moment>) {
+    let (fixed, flights) = benchmark(level, race, track, network, Place::Pad, config);
+    let (random, _) = benchmark(level, race, track, network, Place::Spline, config);
+    (Report { fixed: Some(fixed), random: Some(random) }, flights.trace)
 }
 
 /// Flies and scores `network` on `track` from `place`, on the current rayon pool; `race` is made scored first.

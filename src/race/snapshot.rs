@@ -11,8 +11,8 @@ use crate::learn::policy::ACTIONS;
 use crate::model::constants::CONTROL_S;
 use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
-use crate::race::env::EnvConfig;
 use crate::race::env::observe::{OBSERVATIONS, layout};
+use crate::race::env::{EnvConfig, Race};
 use crate::race::eval::EvalConfig;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView, serialize};
 use serde::{Deserialize, Serialize};
@@ -84,6 +84,12 @@ fn observation(vehicle: &Vehicle) -> serde_json::Value {
 }
 
 impl Snapshot {
+    /// The race that the policy was trained for, in another vehicle if one is given, which the policy takes for its own.
+    pub fn race(&self, vehicle: Option<&Vehicle>) -> Race {
+        let About { track, vehicle: own, env, seed, .. } = &self.about;
+        Race::new(env, track, vehicle.unwrap_or(own), *seed).seen_as(own)
+    }
+
     /// Writes a new file. Weights are `[inputs][outputs]`; a layer is y = W' x + b, hidden ones followed by tanh.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         fsio::write_new(path, &self.to_bytes()?).map_err(Error::write(path))

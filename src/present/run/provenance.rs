@@ -1,6 +1,7 @@
 //! Which program on which machine made a run.
 
 use crate::base::lane::Level;
+use crate::base::threads::processors;
 use serde::Serialize;
 use std::time::SystemTime;
 
@@ -34,11 +35,6 @@ impl Provenance {
             simd: level.to_string(),
         }
     }
-}
-
-/// Logical processors that this process may use.
-pub fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// The processor's name, where the system tells.

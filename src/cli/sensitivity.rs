@@ -1,14 +1,14 @@
 //! `racer eval --sensitivity`: which error of the model costs a policy most.
 
-use super::super::{Outcome, columns, pool, print, tell};
+use super::{Outcome, columns, print, progress, tell};
 use crate::base::fsio::Reserved;
 use crate::base::lane::Level;
+use crate::base::threads;
 use crate::learn::nn::Network;
 use crate::model::track::Track;
 use crate::race::env::Race;
 use crate::race::eval::EvalConfig;
 use crate::race::eval::sensitivity::{Cell, Row, Sensitivity, sensitivity};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 /// Agents in each cell unless asked otherwise.
@@ -16,7 +16,7 @@ pub const AGENTS: usize = 128;
 
 /// What is written and, with `--json`, printed.
 #[derive(Serialize)]
-struct File<'a> {
+struct Document<'a> {
     snapshot: &'a str,
     track: &'a str,
     vehicle: &'a str,
@@ -25,7 +25,7 @@ struct File<'a> {
 }
 
 /// Who flies where.
-pub struct Flown<'a> {
+pub struct Case<'a> {
     pub race: &'a Race,
     pub track: &'a Track,
     pub network: &'a Network<f32>,
@@ -33,39 +33,32 @@ pub struct Flown<'a> {
 }
 
 /// Flies, prints and writes.
-pub fn run(
-    snapshot: &str,
-    flown: &Flown,
-    threads: Option<usize>,
-    json: bool,
-    out: Reserved,
-) -> anyhow::Result<Outcome> {
-    let Flown { race, track, network, config } = *flown;
-    let bar = ProgressBar::new(100);
-    bar.set_style(ProgressStyle::with_template("{bar:24} {percent:>3} %")?);
-    let found = pool::pool(pool::threads(threads))?.install(|| {
+pub fn run(snapshot: &str, flown: &Case, threads: Option<usize>, json: bool, out: Reserved) -> anyhow::Result<Outcome> {
+    let Case { race, track, network, config } = *flown;
+    let bar = progress::bar();
+    let found = threads::on(threads, || {
         let mut observer = |share: f64| bar.set_position((100.0 * share) as u64);
         sensitivity(Level::best(), race, track, network, config, &mut observer)
-    });
+    })?;
     bar.finish_and_clear();
-    let file = File { snapshot, track: &track.name, vehicle: &race.vehicle.name, found: &found };
-    let content = serde_json::to_string_pretty(&file)?;
+    let document = Document { snapshot, track: &track.name, vehicle: &race.vehicle.name, found: &found };
+    let content = serde_json::to_string_pretty(&document)?;
     let written = out.write(format!("{content}\n").as_bytes())?;
-    print(&if json { content } else { text(&file) })?;
+    print(&if json { content } else { text(&document) })?;
     tell(&format!("written to {}", written.display()));
     Ok(Outcome::Done)
 }
 
-fn text(file: &File) -> String {
-    let Sensitivity { agents, nominal, parameters } = file.found;
+fn text(document: &Document) -> String {
+    let Sensitivity { agents, nominal, parameters } = document.found;
     let (charge, factors): (Vec<_>, Vec<_>) = parameters.iter().partition(|row| row.parameter == "charge");
     format!(
         "{} on {} in {}: {agents} flights a cell, with the training's noise; nominal {}\n\n\
          laps completed, %, and median lap, s, with this factor on one parameter alone; * outside of what was trained\n{}\n\n\
          the same for the charge of the battery at the start, 0 empty, 1 full\n{}",
-        file.snapshot,
-        file.track,
-        file.vehicle,
+        document.snapshot,
+        document.track,
+        document.vehicle,
         cell(nominal).replace('\n', " %, lap ") + " s",
         table(&factors),
         table(&charge)

@@ -1,0 +1,61 @@
+//! The files that a diagnosis can leave.
+
+use super::Args;
+use crate::base::check::BadInput;
+use crate::base::encode;
+use crate::base::fsio::{self, Reserved};
+use crate::cli::tell;
+use crate::insight::diagnose::Diagnosed;
+use crate::present::report;
+use crate::present::report::diagnosis::Figures;
+use std::path::Path;
+
+/// Those that were asked for, known to be writable before the work begins.
+pub struct Output<'a> {
+    json: Option<Reserved>,
+    vehicle: Option<Reserved>,
+    page: Option<Reserved>,
+    figures: Option<&'a Path>,
+}
+
+impl<'a> Output<'a> {
+    pub fn new(args: &'a Args) -> Result<Self, BadInput> {
+        let reserve = |path: &Option<_>| path.as_deref().map(Reserved::new).transpose();
+        let (json, vehicle, page) = (reserve(&args.json)?, reserve(&args.extend)?, reserve(&args.report)?);
+        args.svg.as_deref().map(fsio::new_folder).transpose()?;
+        Ok(Self { json, vehicle, page, figures: args.svg.as_deref() })
+    }
+
+    /// Writes them.
+    pub fn write(self, diagnosed: &Diagnosed) -> anyhow::Result<()> {
+        show(diagnosed, self.page, self.figures)?;
+        if let Some(json) = self.json {
+            let document = encode::json("the diagnosis", &diagnosed.diagnosis)?;
+            tell(&format!("figures in {}", json.write(document.as_bytes())?.display()));
+        }
+        if let Some(file) = self.vehicle {
+            let written = file.write(encode::toml("the vehicle", &diagnosed.vehicle)?.as_bytes())?;
+            tell(&format!("extended vehicle in {0}: racer train --vehicle {0}", written.display()));
+        }
+        Ok(())
+    }
+}
+
+/// Page and figures, where they are asked for.
+fn show(diagnosed: &Diagnosed, page: Option<Reserved>, folder: Option<&Path>) -> anyhow::Result<()> {
+    if page.is_none() && folder.is_none() {
+        return Ok(());
+    }
+    let figures = Figures::new(diagnosed)?;
+    if let Some(folder) = folder {
+        for figure in figures.all() {
+            fsio::write_new(&folder.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
+        }
+        tell(&format!("{} figures in {}", figures.all().count(), folder.display()));
+    }
+    if let Some(page) = page {
+        let written = page.write(report::diagnosis::page(diagnosed, &figures).as_bytes())?;
+        tell(&format!("report in {}", written.display()));
+    }
+    Ok(())
+}

@@ -1,0 +1,121 @@
+//! A diagnosis as text.
+
+use crate::cli::columns;
+use crate::insight::diagnose::finding::{Diagnosis, Finding, Status};
+use crate::present::report::digits;
+
+/// What is wrong, why, what it is worth, what to fly next.
+pub fn text(d: &Diagnosis) -> String {
+    let mut out = vec![d.headline()];
+    for (i, finding) in d.findings.iter().enumerate() {
+        out.push(format!("{}. {}", i + 1, paragraph(finding)));
+    }
+    for s in &d.unexplained {
+        let along = s.along.map_or(String::new(), |a| {
+            format!("; it lines up with {a} ({:.0} % of the residual)", 100.0 * s.along_share)
+        });
+        let size = s.structure_rms.max(s.coloured_rms);
+        out.push(format!("structure remains in {}: {:.3} {} of {:.3}{along}", s.channel, size, s.unit, s.rms));
+    }
+    if !d.drift.is_empty() {
+        let rows = d.drift.iter().map(|x| {
+            vec![x.parameter.clone(), format!("{:.4}", x.base), interval(x.value, x.low, x.high), x.unit.into()]
+        });
+        let table = columns::table(&["drift against the base", "was", "is (95 % interval)", ""], rows.collect(), 1..2);
+        out.push(table);
+    }
+    let rows = d.held_out.iter().map(|(name, g)| {
+        vec![
+            name.to_string(),
+            format!("{:.4}", g.before),
+            format!("{:.4}", g.after),
+            g.unit.to_string(),
+            format!("{:.4}", g.r2_before),
+            format!("{:.4}", g.r2_after),
+        ]
+    });
+    let header = ["on flight not used for fitting", "RMSE before", "after", "", "R2 before", "after"];
+    out.push(columns::table(&header, rows.collect(), 1..6));
+    if !d.horizons.is_empty() {
+        let rows = d.horizons.iter().map(|a| {
+            vec![
+                format!("{:.2} s", a.before.after_s),
+                format!("{:.3} -> {:.3}", a.before.velocity_m_s, a.after.velocity_m_s),
+                format!("{:.3} -> {:.3}", a.before.position_m, a.after.position_m),
+                format!("{:.2} -> {:.2}", a.before.attitude_deg, a.after.attitude_deg),
+                a.before.starts.to_string(),
+            ]
+        });
+        out.push(columns::table(&["open loop, after", "m/s off", "m off", "deg off", "starts"], rows.collect(), 1..5));
+    }
+    if let Some(captured) = d.captured {
+        out.push(format!("{:.0} % of what a better model could gain on that flight was gained", 100.0 * captured));
+    }
+    let next: Vec<&str> = d.findings.iter().filter(|f| f.status != Status::Named).map(|f| f.manoeuvre).collect();
+    if let Some(next) = next.first() {
+        out.push(format!("fly next: {next}"));
+    }
+    out.push(not_shown(d));
+    out.join("\n\n")
+}
+
+/// A value and its interval, with as many digits as the interval's width has a meaning for.
+fn interval(value: f64, low: f64, high: f64) -> String {
+    let [value, low, high] = [value, low, high].map(|x| digits(x, high - low, 2));
+    format!("{value} ({low} to {high})")
+}
+
+fn paragraph(f: &Finding) -> String {
+    let values = f.parameters.iter().map(|(name, v)| format!("{name} {} {}", interval(v.value, v.low, v.high), v.unit));
+    let status = match f.status {
+        Status::Named => String::new(),
+        Status::NamedSet => format!(" - or {}: these flights do not tell them apart", f.members[1..].join(", ")),
+        Status::Suspected => format!(" - suspected only: {}", f.why.as_deref().unwrap_or("")),
+    };
+    let explained: Vec<String> =
+        f.mentioned().iter().map(|(c, share)| format!("{:.0} % of {c}", 100.0 * share)).collect();
+    let explained = if explained.is_empty() { String::new() } else { format!("explains {}; ", explained.join(", ")) };
+    let gain = f.gain.get(f.channel).map_or(String::new(), |g| {
+        format!(
+            "\n   without it, on flight not used for fitting, {} {:.3} {} off; with it {:.3}",
+            f.channel, g.before, g.unit, g.after
+        )
+    });
+    format!(
+        "{} ({}){status}\n   {}\n   {}\n   {explained}{:.0} stretches agree; {:.2} m/s after a second{gain}",
+        f.name,
+        f.effect,
+        f.sentence,
+        values.collect::<Vec<_>>().join(", "),
+        f.stretches,
+        f.impact
+    )
+}
+
+/// What the flights could not show.
+fn not_shown(d: &Diagnosis) -> String {
+    let names: Vec<&str> = d.not_detectable.iter().map(|h| h.effect).collect();
+    if names.is_empty() {
+        "every effect would have shown".into()
+    } else {
+        format!("could not have shown: {}", names.join(", "))
+    }
+}
+
+/// What the flights could show and tell apart.
+pub fn plan(d: &Diagnosis) -> String {
+    let rows = d.detectable.iter().map(|p| {
+        vec![
+            p.effect.to_string(),
+            format!("{:.2e}", p.smallest),
+            format!("{:.2e}", p.told_apart),
+            p.nearest.unwrap_or("-").to_string(),
+            format!("{} to {}", p.typical[0], p.typical[1]),
+            p.unit.to_string(),
+        ]
+    });
+    let header = ["effect", "seen from", "told apart from", "nearest rival", "typical", ""];
+    let table = columns::table(&header, rows.collect(), 1..3);
+    let cannot = d.not_detectable.iter().map(|h| format!("\n  {}: {}", h.effect, h.why)).collect::<String>();
+    format!("these flights could show\n\n{table}\n\nand could not{cannot}")
+}

@@ -1,0 +1,30 @@
+//! What is refused: logs that would give a wrong vehicle, and results that are none.
+
+use super::result::Identification;
+use crate::base::check::{BadInput, Check};
+use crate::base::error::{Error, Result};
+use crate::insight::quality::{Finding, Quality, Severity};
+
+/// Fails where a log contradicts itself, such as a rate that goes against its setpoint.
+pub fn problems(logs: &[Quality]) -> Result<(), BadInput> {
+    for quality in logs {
+        let wrong = |finding: &&Finding| finding.severity == Severity::Problem && finding.stream != "file";
+        if let Some(finding) = quality.findings.iter().find(wrong) {
+            let expected = "a log without problems";
+            let advice = format!("{}, or use the log all the same with --despite-problems", finding.so);
+            return Err(BadInput::new(&quality.log.name, &finding.what, expected, advice));
+        }
+    }
+    Ok(())
+}
+
+/// Fails where no parameter could be told, and where the vehicle could not fly.
+pub fn nothing(found: &Identification) -> Result<()> {
+    if found.channels.is_empty() {
+        let why = "no parameter could be told";
+        let advice = "`racer check` names what is missing";
+        return Err(BadInput::new("the logs", why, "at least one response", advice).into());
+    }
+    let cannot = |key, found| Error::Failed(format!("the identified vehicle cannot fly: {key}: {found}"));
+    found.vehicle.check().map_err(|invalid| cannot(invalid.key, invalid.found))
+}

@@ -1,0 +1,157 @@
+//! A training from its set-up to a filled run folder: trained, every snapshot evaluated, the best kept and drawn.
+
+use super::report::figures::{self, TRAINING};
+use super::run::evaluated::{self, EVALUATED, Evaluated};
+use super::run::metrics::{METRICS, Row, to_csv};
+use super::run::provenance::Provenance;
+use super::run::{POLICY, Run, SNAPSHOTS, TENSORBOARD, resolved, tensorboard};
+use crate::base::encode;
+use crate::base::error::{Error, Result};
+use crate::base::lane::Level;
+use crate::base::threads;
+use crate::learn::ppo::train::{Flow, Iteration, Observer};
+use crate::race::config::Setup;
+use crate::race::env::tally::Tally;
+use crate::race::eval::both_starts;
+use crate::race::snapshot::Snapshot;
+use crate::race::train::{Trained, train};
+use std::time::SystemTime;
+
+/// Who watches a training, and may end it.
+pub trait Watch: Send {
+    /// It begins in the folder of `run`.
+    fn begin(&mut self, _run: &Run, _setup: &Setup, _made: &Provenance) {}
+    /// An iteration is done; `row` is what the log says of it.
+    fn iteration(&mut self, _iteration: &Iteration<Tally>, _row: &Row) {}
+    /// So many snapshots are about to be evaluated.
+    fn evaluating(&mut self, _snapshots: usize) {}
+    /// It is done, and everything is written.
+    fn finished(&mut self, _finished: &Finished) -> Result<()> {
+        Ok(())
+    }
+    /// Whether to come to an end: asked after every iteration and before every evaluation.
+    fn stop(&self) -> bool {
+        false
+    }
+}
+
+/// A finished training.
+#[derive(Clone, Debug)]
+pub struct Finished {
+    pub run: Run,
+    /// Environment steps and time, s, of the training.
+    pub steps: u64,
+    pub seconds: f64,
+    /// Policies that were evaluated.
+    pub snapshots: usize,
+    /// The best of them, and how it did.
+    pub policy: Snapshot,
+    pub evaluated: Evaluated,
+}
+
+/// How a training ended.
+#[derive(Clone, Debug)]
+pub enum Ended {
+    Finished(Box<Finished>),
+    /// Whoever watched asked for it after so many steps. What was trained is in the run folder, and nothing is chosen.
+    Stopped {
+        steps: u64,
+    },
+}
+
+/// Trains as `setup` says and fills the folder of `run`, on so many threads; `command` is how the user asked for it.
+pub fn make(run: &Run, setup: &Setup, threads: usize, command: &str, watch: &mut dyn Watch) -> Result<Ended> {
+    let (level, provenance) = (Level::best(), Provenance::now(Level::best(), threads));
+    run.write("command.txt", format!("{command}\n"))?;
+    for (name, content) in resolved::files(setup)? {
+        run.write(name, content)?;
+    }
+    run.write("provenance.json", encode::json("the provenance", &provenance)?)?;
+    watch.begin(run, setup, &provenance);
+    threads::on(Some(threads), || {
+        let mut log = Log { rows: Vec::new(), last_s: 0.0, watch };
+        let started = SystemTime::now();
+        let trained = train(level, setup, &mut log);
+        let Log { rows, watch, .. } = log;
+        let names = save(run, &trained, started, &rows)?;
+        if trained.stopped {
+            return Ok(Ended::Stopped { steps: trained.steps });
+        }
+        choose(run, setup, level, (trained, names), &rows, watch)
+    })?
+}
+
+/// Gathers the rows of the log. Writing waits until the training is over: it is not part of the budget.
+struct Log<'a> {
+    rows: Vec<Row>,
+    last_s: f64,
+    watch: &'a mut dyn Watch,
+}
+
+impl Observer<Tally> for Log<'_> {
+    fn iteration(&mut self, iteration: &Iteration<Tally>) -> Flow {
+        let row = Row::new(iteration, iteration.seconds - self.last_s);
+        self.last_s = iteration.seconds;
+        self.watch.iteration(iteration, &row);
+        self.rows.push(row);
+        if self.watch.stop() { Flow::Stop } else { Flow::Continue }
+    }
+}
+
+/// Writes policies and logs; returns the names of the policies' files.
+fn save(run: &Run, trained: &Trained, started: SystemTime, rows: &[Row]) -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    for policy in &trained.policies {
+        let name = format!("{SNAPSHOTS}/{:013}.safetensors", policy.about.steps);
+        run.write(&name, policy.to_bytes()?)?;
+        names.push(name);
+    }
+    run.write(METRICS, to_csv(rows)?)?;
+    run.write(&format!("{TENSORBOARD}/{}", tensorboard::file_name(started)), tensorboard::events(started, rows))?;
+    Ok(names)
+}
+
+/// Evaluates all policies, and writes the best with its figures.
+fn choose(
+    run: &Run,
+    setup: &Setup,
+    level: Level,
+    (trained, names): (Trained, Vec<String>),
+    rows: &[Row],
+    watch: &mut dyn Watch,
+) -> Result<Ended> {
+    watch.evaluating(names.len());
+    let (mut all, mut traces) = (Vec::new(), Vec::new());
+    for (policy, name) in trained.policies.iter().zip(names) {
+        if watch.stop() {
+            return Ok(Ended::Stopped { steps: trained.steps });
+        }
+        let (report, trace) = both_starts(level, &policy.race(None), &setup.track, &policy.network, &setup.config.eval);
+        let (steps, seconds) = (policy.about.steps, policy.about.seconds);
+        let penalty = setup.config.ppo.penalty(setup.config.budget.share(steps, seconds));
+        all.push(Evaluated { snapshot: name, steps, seconds, penalty, report });
+        traces.push(trace);
+    }
+    run.write(EVALUATED, encode::json("the evaluations", &all)?)?;
+    let best = evaluated::best(&all).map(|best| &best.snapshot);
+    let Some(chosen) = all.iter().position(|e| Some(&e.snapshot) == best) else {
+        return Err(Error::Failed("the training took no snapshot".into()));
+    };
+    run.write(POLICY, trained.policies[chosen].to_bytes()?)?;
+    run.write("evaluation.json", encode::json("the evaluation", &all[chosen])?)?;
+    figures::write_lap(run, &setup.track, &traces[chosen], &all[chosen].report)?;
+    let title = format!("{}, seed {}", setup.track.name, setup.config.seed);
+    let curve: Vec<_> = rows.iter().map(|row| [row.get("time/seconds"), row.get("episode/gates")]).collect();
+    run.write(TRAINING, figures::training(&title, &curve, &all, &all[chosen].snapshot)?)?;
+
+    let finished = Finished {
+        run: run.clone(),
+        steps: trained.steps,
+        seconds: trained.seconds,
+        snapshots: all.len(),
+        policy: trained.policies[chosen].clone(),
+        evaluated: all[chosen].clone(),
+    };
+    watch.finished(&finished)?;
+    Ok(Ended::Finished(Box::new(finished)))
+}
