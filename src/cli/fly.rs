@@ -5,7 +5,7 @@ use crate::base::check::BadInput;
 use crate::base::document::nearest;
 use crate::base::fsio::Reserved;
 use crate::base::lane::Level;
-use crate::flight::fly::{Flown, by_pilot, by_policy};
+use crate::flight::fly::{Flown, by_pilot, by_policy, check_pilot};
 use crate::flight::pilot::Kind;
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Stream, write};
@@ -65,8 +65,6 @@ fn help() -> String {
     format!("{HELP}\n\nManoeuvres: {}", names.join(", "))
 }
 
-/// Shortest flight of the pilot, s: it needs half of that for taking off and landing.
-const SHORTEST_PILOT_S: f64 = 40.0;
 /// Thrust over weight of the vehicles that the pilot is made for.
 const PILOT_THRUST: [f64; 2] = [2.5, 8.0];
 
@@ -100,11 +98,7 @@ fn fly_policy(args: &Args, policy: &str, sensors: &SensorConfig) -> anyhow::Resu
 fn fly_pilot(args: &Args, sensors: &SensorConfig) -> anyhow::Result<Flown> {
     let kinds = args.manoeuvres.iter().map(|name| named(name)).collect::<Result<Vec<_>, _>>()?;
     let seconds = args.seconds.unwrap_or(300.0);
-    if seconds < SHORTEST_PILOT_S {
-        let expected = format!("{SHORTEST_PILOT_S} s or more");
-        let advice = "the pilot takes off, flies, and lands";
-        return Err(BadInput::new("--seconds", format!("{seconds} s"), &expected, advice).into());
-    }
+    check_pilot("--seconds", seconds)?;
     let vehicle = Vehicle::load(args.vehicle.as_deref().unwrap_or("seed_class"))?;
     let ratio = vehicle.thrust_to_weight();
     let [low, high] = PILOT_THRUST;

@@ -2,6 +2,7 @@
 
 mod recorder;
 
+use crate::base::check::BadInput;
 use crate::base::lane::{Level, dispatch};
 use crate::flight::Log;
 use crate::flight::pilot::{Kind, Limits, Pilot, Seen};
@@ -30,6 +31,8 @@ pub struct Flown {
     pub failure: Option<&'static str>,
 }
 
+/// Longest flight, s.
+const LONGEST_S: f64 = 3600.0;
 /// Time that is recorded after the landing, s.
 const AFTER_S: f64 = 1.0;
 
@@ -59,6 +62,18 @@ pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Kind], seed:
         landed_s = if pilot.landed() { landed_s + CONTROL_S } else { 0.0 };
     }
     recorder.finish(Vec::new(), None)
+}
+
+/// Shortest flight of the pilot, s: it needs half of that for taking off and landing.
+const SHORTEST_PILOT_S: f64 = 40.0;
+
+/// Fails where `seconds`, given at `place`, are too few for the pilot.
+pub fn check_pilot(place: &str, seconds: f64) -> Result<(), BadInput> {
+    if (SHORTEST_PILOT_S..=LONGEST_S).contains(&seconds) {
+        return Ok(());
+    }
+    let expected = format!("{SHORTEST_PILOT_S} to {LONGEST_S} s");
+    Err(BadInput::new(place, format!("{seconds} s"), &expected, "the pilot takes off, flies, and lands"))
 }
 
 /// The ground at height 0: it carries what thrust does not lift, and stops what comes down.

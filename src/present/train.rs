@@ -13,6 +13,7 @@ use crate::learn::ppo::train::{Flow, Iteration, Observer};
 use crate::race::config::Setup;
 use crate::race::env::tally::Tally;
 use crate::race::eval::both_starts;
+use crate::race::eval::fly::Moment;
 use crate::race::snapshot::Snapshot;
 use crate::race::train::{Trained, train};
 use std::time::SystemTime;
@@ -73,11 +74,11 @@ pub fn make(run: &Run, setup: &Setup, threads: usize, command: &str, watch: &mut
         let started = SystemTime::now();
         let trained = train(level, setup, &mut log);
         let Log { rows, watch, .. } = log;
-        let names = save(run, &trained, started, &rows)?;
+        save(run, &trained, started, &rows)?;
         if trained.stopped {
             return Ok(Ended::Stopped { steps: trained.steps });
         }
-        choose(run, setup, level, (trained, names), &rows, watch)
+        choose(run, setup, level, &trained, &rows, watch)
     })?
 }
 
@@ -98,17 +99,40 @@ impl Observer<Tally> for Log<'_> {
     }
 }
 
-/// Writes policies and logs; returns the names of the policies' files.
-fn save(run: &Run, trained: &Trained, started: SystemTime, rows: &[Row]) -> Result<Vec<String>> {
-    let mut names = Vec::new();
+/// Name of a policy's file in its run folder: names are in the order of training.
+fn file_of(policy: &Snapshot) -> String {
+    format!("{SNAPSHOTS}/{:013}.safetensors", policy.about.steps)
+}
+
+/// Writes policies and logs.
+fn save(run: &Run, trained: &Trained, started: SystemTime, rows: &[Row]) -> Result<()> {
     for policy in &trained.policies {
-        let name = format!("{SNAPSHOTS}/{:013}.safetensors", policy.about.steps);
-        run.write(&name, policy.to_bytes()?)?;
-        names.push(name);
+        run.write(&file_of(policy), policy.to_bytes()?)?;
     }
     run.write(METRICS, to_csv(rows)?)?;
     run.write(&format!("{TENSORBOARD}/{}", tensorboard::file_name(started)), tensorboard::events(started, rows))?;
-    Ok(names)
+    Ok(())
+}
+
+/// Evaluates all policies, in their order, each with the nominal vehicle's flight from the pad; none where `stop` says so in between.
+pub fn evaluate(
+    level: Level,
+    setup: &Setup,
+    policies: &[Snapshot],
+    stop: &mut dyn FnMut() -> bool,
+) -> Option<Vec<(Evaluated, Vec<Moment>)>> {
+    let Setup { config, track, .. } = setup;
+    let mut all = Vec::new();
+    for policy in policies {
+        if stop() {
+            return None;
+        }
+        let (report, trace) = both_starts(level, &policy.race(None), track, &policy.network, &config.eval);
+        let (steps, seconds) = (policy.about.steps, policy.about.seconds);
+        let penalty = config.ppo.penalty(config.budget.share(steps, seconds));
+        all.push((Evaluated { snapshot: file_of(policy), steps, seconds, penalty, report }, trace));
+    }
+    Some(all)
 }
 
 /// Evaluates all policies, and writes the best with its figures.
@@ -116,22 +140,15 @@ fn choose(
     run: &Run,
     setup: &Setup,
     level: Level,
-    (trained, names): (Trained, Vec<String>),
+    trained: &Trained,
     rows: &[Row],
     watch: &mut dyn Watch,
 ) -> Result<Ended> {
-    watch.evaluating(names.len());
-    let (mut all, mut traces) = (Vec::new(), Vec::new());
-    for (policy, name) in trained.policies.iter().zip(names) {
-        if watch.stop() {
-            return Ok(Ended::Stopped { steps: trained.steps });
-        }
-        let (report, trace) = both_starts(level, &policy.race(None), &setup.track, &policy.network, &setup.config.eval);
-        let (steps, seconds) = (policy.about.steps, policy.about.seconds);
-        let penalty = setup.config.ppo.penalty(setup.config.budget.share(steps, seconds));
-        all.push(Evaluated { snapshot: name, steps, seconds, penalty, report });
-        traces.push(trace);
-    }
+    watch.evaluating(trained.policies.len());
+    let Some(flown) = evaluate(level, setup, &trained.policies, &mut || watch.stop()) else {
+        return Ok(Ended::Stopped { steps: trained.steps });
+    };
+    let (all, traces): (Vec<_>, Vec<_>) = flown.into_iter().unzip();
     run.write(EVALUATED, encode::json("the evaluations", &all)?)?;
     let best = evaluated::best(&all).map(|best| &best.snapshot);
     let Some(chosen) = all.iter().position(|e| Some(&e.snapshot) == best) else {

@@ -1,10 +1,9 @@
 //! Observations and the answers to them, kept with a policy, so that whoever loads it can tell that it still works.
 
 use crate::base::check::Invalid;
-use crate::base::lane::{Kernel, Lane32, Level, dispatch};
 use crate::base::rng::{Philox, Stream};
-use crate::learn::nn::{Network, TILE_SAMPLES};
-use crate::learn::policy::ACTIONS;
+use crate::learn::nn::Network;
+use crate::race::act::act;
 use crate::race::env::observe::OBSERVATIONS;
 
 /// Observations kept.
@@ -30,29 +29,6 @@ pub fn check(network: &Network<f32>, observations: &[f32], expected: &[f32]) -> 
 
 /// Squashed mean actions `[8][4]`.
 fn actions(network: &Network<f32>, observations: &[f32]) -> Vec<f32> {
-    // The network takes whole tiles, feature by feature.
-    let mut tile = vec![0.0; OBSERVATIONS * TILE_SAMPLES];
-    for (sample, observation) in observations.chunks_exact(OBSERVATIONS).enumerate() {
-        for (feature, &value) in observation.iter().enumerate() {
-            tile[feature * TILE_SAMPLES + sample] = value;
-        }
-    }
-    let mean = dispatch(Level::best(), Forward { network, tile: &tile });
-    (0..SAMPLES * ACTIONS).map(|i| mean[i % ACTIONS * TILE_SAMPLES + i / ACTIONS].tanh()).collect()
-}
-
-struct Forward<'a> {
-    network: &'a Network<f32>,
-    tile: &'a [f32],
-}
-
-impl Kernel for Forward<'_> {
-    type Output = [f32; ACTIONS * TILE_SAMPLES];
-
-    #[inline(always)]
-    fn run<L: Lane32>(self) -> Self::Output {
-        let mut mean = [0.0; ACTIONS * TILE_SAMPLES];
-        self.network.forward_actor::<L>(self.tile, &mut self.network.scratch::<L>(), &mut mean);
-        mean
-    }
+    let (observations, _) = observations.as_chunks();
+    act(network, observations).concat()
 }
