@@ -24,18 +24,22 @@ pub use open::{Opened, Options, open, open_with};
 pub struct Stream<const N: usize> {
     /// Seconds since the start of the log, in the order of the file.
     pub time_s: Vec<f64>,
+    /// The numbers of each time.
     pub rows: Vec<[f64; N]>,
 }
 
 impl<const N: usize> Stream<N> {
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.time_s.len()
     }
 
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.time_s.is_empty()
     }
 
+    /// Adds a row.
     pub fn push(&mut self, time_s: f64, row: [f64; N]) {
         self.time_s.push(time_s);
         self.rows.push(row);
@@ -64,6 +68,7 @@ pub struct Log {
     pub battery: Stream<2>,
     /// Rotor speeds, rad/s.
     pub rotors: Stream<4>,
+    /// What the file says about the vehicle.
     pub vehicle: VehicleRecord,
     /// What of the file could be read.
     pub readable: Readable,
@@ -73,6 +78,7 @@ pub struct Log {
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleRecord {
+    /// Mass, kg.
     pub mass_kg: Option<f64>,
     /// Body rates that a full stick asks for: roll, pitch, yaw, rad/s.
     pub max_rate_rad_s: Option<[f64; 3]>,
@@ -81,8 +87,16 @@ pub struct VehicleRecord {
 /// How much of a file could be read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Readable {
+    /// All of it.
     #[default]
     Whole,
     /// The file breaks off, or turns bad, after so many of its bytes; what came before is in the log.
-    Prefix { bytes: u64, of: u64, why: String },
+    Prefix {
+        /// Bytes that could be read.
+        bytes: u64,
+        /// Bytes of the file.
+        of: u64,
+        /// What is wrong after them.
+        why: String,
+    },
 }

@@ -6,7 +6,7 @@ use crate::table;
 use crate::truth::Vehicle;
 use crate::truth::hidden::World;
 use racer::base::stats::quantile;
-use racer::present::report::lap;
+use racer::present::report::beside;
 use racer::race::snapshot::Snapshot;
 
 /// Races, prints laps and distances, and draws.
@@ -31,7 +31,7 @@ pub fn show(args: &Args, policy: &str) {
     }
     let paths = [(names[0].as_str(), here.path.as_slice()), (names[1].as_str(), there.path.as_slice())];
     let svg =
-        lap::beside(&policy.about.track, &paths, "the nominal vehicle's lap in both simulators").expect("a picture");
+        beside::svg(&policy.about.track, &paths, "the nominal vehicle's lap in both simulators").expect("a picture");
     let file = args.svg.as_ref().expect("asked for with the policy");
     racer::base::fsio::write_new(file, svg.as_bytes()).expect("a new file");
 }

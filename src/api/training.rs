@@ -20,6 +20,8 @@ use std::path::Path;
 pub struct Progress {
     /// Share of the budget used, 0 to 1.
     pub share: f64,
+    /// Updates done.
+    pub updates: usize,
     /// Environment steps done.
     pub steps: u64,
     /// Time since the training began, s.
@@ -29,8 +31,8 @@ pub struct Progress {
 
 impl Progress {
     fn new(iteration: &Iteration<Tally>, row: Row) -> Self {
-        let &Iteration { share, steps, seconds, .. } = iteration;
-        Self { share, steps, seconds, row }
+        let &Iteration { index, share, steps, seconds, .. } = iteration;
+        Self { share, updates: index, steps, seconds, row }
     }
 
     /// A number of the last update by its name in `metrics.csv`, such as `episode/gates`; none where there was nothing to average

@@ -13,8 +13,14 @@ impl Setup {
     /// --help` lists all keys. Track and vehicle are names of built-in ones, or files. Fails on anything that makes no sense, alone
     /// or together.
     pub fn new(settings: &[&str]) -> Result<Self> {
+        Self::from_file(DEFAULT, settings)
+    }
+
+    /// The configuration of this name or file, with these settings in place of its own. A file needs only the keys that differ from
+    /// the built-in configuration, `a2rl`.
+    pub fn from_file(name: &str, settings: &[&str]) -> Result<Self> {
         let settings = settings.iter().map(|text| Setting::parse(text)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self::load(DEFAULT, &settings)?)
+        Ok(Self::load(name, &settings)?)
     }
 }
 

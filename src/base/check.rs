@@ -65,8 +65,11 @@ pub struct BadInput {
     pub place: String,
     /// Dotted key in that file; empty where there is none.
     pub key: String,
+    /// What was found there.
     pub found: String,
+    /// What would be right.
     pub expected: String,
+    /// What to do about it; may be empty.
     pub advice: String,
 }
 

@@ -11,8 +11,7 @@ mod units;
 
 pub use frames::{Body, VelocityFrame, World};
 pub use parts::{Battery, Imu, Odometry, Rotors, Setpoint};
-pub use quantity::{Scalar, Time, Vector};
-pub use units::{Acceleration, AngularRate, Current, Length, Speed, Voltage};
+pub use quantity::Time;
 
 use crate::base::check::{BadInput, Check, Invalid};
 use crate::base::document::Library;

@@ -18,8 +18,11 @@ const LIBRARY: Library = Library {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorConfig {
+    /// Body rates and specific force.
     pub imu: Imu,
+    /// Position, velocity and attitude.
     pub odometry: Odometry,
+    /// The battery's voltage.
     pub battery: Voltmeter,
 }
 
@@ -29,7 +32,9 @@ pub struct SensorConfig {
 pub struct Imu {
     /// A multiple of 100 Hz, up to 8000; also the rate at which the flight is integrated.
     pub rate_hz: f64,
+    /// Errors of the body rates, rad/s.
     pub gyro: Channel,
+    /// Errors of the specific force, m/s2.
     pub specific_force: Channel,
 }
 
@@ -39,8 +44,11 @@ pub struct Imu {
 pub struct Odometry {
     /// At most the IMU's; samples fall on those of the IMU.
     pub rate_hz: f64,
+    /// Errors of the position, m.
     pub position: Channel,
+    /// Errors of the velocity, m/s.
     pub velocity: Channel,
+    /// Errors of the attitude, rad.
     pub attitude: Turn,
 }
 
@@ -50,6 +58,7 @@ pub struct Odometry {
 pub struct Voltmeter {
     /// At most the IMU's; samples fall on those of the IMU.
     pub rate_hz: f64,
+    /// Errors of the voltage, V.
     pub voltage: Channel,
 }
 

@@ -56,10 +56,13 @@ pub type Watch<'a> = &'a mut dyn FnMut(&str, f64);
 
 /// Flights and their diagnosis, with all that a report needs.
 pub struct Diagnosed {
+    /// What was found.
     pub diagnosis: Diagnosis,
     /// The base vehicle with what was found.
     pub vehicle: Vehicle,
+    #[doc(hidden)]
     pub problem: Problem,
+    #[doc(hidden)]
     pub selection: Selection,
 }
 

@@ -30,6 +30,7 @@ pub enum Severity {
 /// Something about a log that a user should know.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
+    /// How bad it is.
     pub severity: Severity,
     /// What kind of finding, such as `gap`.
     pub kind: &'static str,
@@ -46,7 +47,9 @@ pub struct Finding {
 /// One stream in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
+    /// Which stream, such as `imu`.
     pub stream: &'static str,
+    /// How many there are.
     pub samples: usize,
     /// Mean rate, 1/s.
     pub rate_hz: Option<f64>,
@@ -61,6 +64,7 @@ pub struct Summary {
 pub struct Quality {
     /// The log with time ascending in every stream, repeated rows gone and clocks aligned.
     pub log: Log,
+    /// What each stream holds.
     pub streams: Vec<Summary>,
     /// By how much the odometry's clock was moved to the IMU's, s.
     pub moved_s: f64,
@@ -73,10 +77,12 @@ pub struct Quality {
 }
 
 impl Finding {
+    /// A finding that holds throughout.
     pub fn new(severity: Severity, kind: &'static str, stream: &'static str, what: String, so: &str) -> Self {
         Self { severity, kind, stream, span_s: None, what, so: so.into() }
     }
 
+    /// The same, but only then.
     pub fn during(mut self, span: Span) -> Self {
         self.span_s = Some(span);
         self

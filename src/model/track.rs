@@ -31,6 +31,7 @@ const LIBRARY: Library = Library {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Track {
+    /// What it is called.
     pub name: String,
     /// Where a race begins.
     pub start: Pose,
@@ -47,7 +48,9 @@ pub struct Track {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pose {
+    /// World, m.
     pub position_m: [f64; 3],
+    /// Counter-clockwise from x, deg.
     pub heading_deg: f64,
 }
 
@@ -55,7 +58,9 @@ pub struct Pose {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Volume {
+    /// Lower corner, m.
     pub min_m: [f64; 3],
+    /// Upper corner, m.
     pub max_m: [f64; 3],
 }
 
@@ -63,6 +68,7 @@ pub struct Volume {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Section {
+    /// What it is called.
     pub name: String,
     /// Places in the list of gates, counted from 0, virtual ones included.
     pub gates: Vec<usize>,
@@ -91,16 +97,19 @@ impl Track {
 }
 
 impl Pose {
+    /// World, m.
     pub fn position(&self) -> Vector3<f64> {
         self.position_m.into()
     }
 
+    /// Counter-clockwise from x, rad.
     pub fn heading_rad(&self) -> f64 {
         self.heading_deg.to_radians()
     }
 }
 
 impl Volume {
+    /// Whether a place, m, is in it.
     pub fn contains(&self, position: &Vector3<f64>) -> bool {
         (0..3).all(|axis| self.min_m[axis] <= position[axis] && position[axis] <= self.max_m[axis])
     }

@@ -27,15 +27,22 @@ const LIBRARY: Library = Library {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vehicle {
+    /// What it is called.
     pub name: String,
+    /// Mass, kg.
     pub mass_kg: f64,
+    /// Gravity where it flies, m/s2.
     pub gravity_m_s2: f64,
     /// Coefficients c0..c5 of Eq. 7, N: thrust = c0 + c1 u + c2 u^2 + c3 u^3 + c4 V + c5 u V, with the filtered thrust
     /// command u in [-1, 1] and the battery voltage V in volts.
     pub thrust_n: [f64; 6],
+    /// Lags of its responses, s.
     pub time_constant_s: TimeConstants,
+    /// Body rates at full command, deg/s.
     pub max_rate_deg_s: MaxRates,
+    /// Drag.
     pub drag: Drag,
+    /// Battery.
     pub battery: Battery,
     /// What the vehicle does beyond the compact model.
     #[serde(default, skip_serializing_if = "Extension::is_empty")]
@@ -56,6 +63,7 @@ pub struct Identified {
     /// Rate setpoints that a command of 1 stands for: roll, pitch, yaw, deg/s. A policy's command times these is what
     /// the flight controller is to be sent.
     pub full_rate_deg_s: [f64; 3],
+    /// The flights.
     pub logs: Vec<LogSpan>,
     /// Keys of this file that the base vehicle lent, and why.
     pub assumed: BTreeMap<String, String>,
@@ -67,6 +75,7 @@ pub struct Identified {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LogSpan {
+    /// Name of the log.
     pub name: String,
     /// s since the start of the log.
     pub span_s: [f64; 2],
@@ -76,9 +85,13 @@ pub struct LogSpan {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TimeConstants {
+    /// Of the roll rate, s.
     pub roll: f64,
+    /// Of the pitch rate, s.
     pub pitch: f64,
+    /// Of the yaw rate, s.
     pub yaw: f64,
+    /// Of the thrust command, s.
     pub thrust: f64,
 }
 
@@ -86,8 +99,11 @@ pub struct TimeConstants {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MaxRates {
+    /// About x, deg/s.
     pub roll: f64,
+    /// About y, deg/s.
     pub pitch: f64,
+    /// About z, deg/s.
     pub yaw: f64,
 }
 
@@ -99,6 +115,7 @@ pub struct Drag {
     pub semi_axes_m: [f64; 3],
     /// Without unit. Higher slows the top speed.
     pub coefficient: f64,
+    /// Density of the air, kg/m3.
     pub air_density_kg_m3: f64,
 }
 

@@ -1,5 +1,8 @@
 //! Pictures of a run. They draw numbers and compute none.
 
+// Benchmarks draw it.
+#[cfg(feature = "internals")]
+pub mod beside;
 pub mod commands;
 pub mod diagnosis;
 pub mod figures;

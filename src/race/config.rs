@@ -66,13 +66,17 @@ impl Config {
 /// A configuration with the track and the vehicle that it names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
+    #[doc(hidden)]
     pub config: Config,
+    /// What is raced on.
     pub track: Track,
+    /// What is raced with; may be replaced by another one.
     pub vehicle: Vehicle,
 }
 
 impl Setup {
-    /// As [`Config::load`], with the files it names; checks that they fit together.
+    /// As the configuration is loaded, with the files it names; checks that they fit together.
+    #[doc(hidden)]
     pub fn load(name: &str, settings: &[Setting]) -> Result<Self, BadInput> {
         let layers = Layers::open(name, settings)?;
         let config = layers.resolve()?;

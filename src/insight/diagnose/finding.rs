@@ -21,6 +21,7 @@ pub enum Verdict {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
+    /// Evident, replicated, of a size that matters, and told from all others.
     Named,
     /// One of several, which these flights do not tell apart.
     NamedSet,
@@ -31,20 +32,28 @@ pub enum Status {
 /// A number with its 95 % interval.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Value {
+    /// The best estimate.
     pub value: f64,
+    /// Lower end of the interval.
     pub low: f64,
+    /// Upper end of the interval.
     pub high: f64,
+    /// Of all three.
     pub unit: String,
 }
 
 /// Before and after, in `unit`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Gain {
+    /// RMSE without.
     pub before: f64,
+    /// RMSE with.
     pub after: f64,
     /// Shares of the variance that the model explains.
     pub r2_before: f64,
+    /// The same with.
     pub r2_after: f64,
+    /// Of the RMSE.
     pub unit: &'static str,
 }
 
@@ -53,13 +62,17 @@ pub struct Gain {
 pub struct Finding {
     /// Identifier.
     pub effect: &'static str,
+    /// What people call it.
     pub name: &'static str,
+    /// How sure it is.
     pub status: Status,
     /// All that it may be, itself first; only itself where it is named.
     pub members: Vec<&'static str>,
+    /// What it means, in a sentence.
     pub sentence: &'static str,
     /// The channel that it explains most of.
     pub channel: &'static str,
+    /// Its size, by parameter.
     pub parameters: BTreeMap<String, Value>,
     /// Stretches of flight that agree.
     pub stretches: f64,
@@ -69,9 +82,11 @@ pub struct Finding {
     pub gain: BTreeMap<&'static str, Gain>,
     /// How far apart the simulations with and without it are after one second, m/s; for sensors, what the error integrates to.
     pub impact: f64,
+    /// Identifiers of effects that look like it.
     pub rivals: Vec<&'static str>,
     /// What to fly to be surer.
     pub manoeuvre: &'static str,
+    /// Names of the manoeuvres of the pilot that show it.
     pub kinds: Vec<&'static str>,
     /// Why it is no more than suspected.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -84,78 +99,110 @@ const MENTIONED: f64 = 0.02;
 /// A number of the compact model that differs from the base vehicle's.
 #[derive(Clone, Debug, Serialize)]
 pub struct Drift {
+    /// Which number.
     pub parameter: String,
+    /// What the base vehicle says.
     pub base: f64,
+    /// What the flights say.
     pub value: f64,
+    /// Lower end of its 95 % interval.
     pub low: f64,
+    /// Upper end of its 95 % interval.
     pub high: f64,
+    /// Of all four.
     pub unit: &'static str,
 }
 
 /// An effect that these flights could not show, or not at a size that matters.
 #[derive(Clone, Debug, Serialize)]
 pub struct NotDetectable {
+    /// Identifier.
     pub effect: &'static str,
+    /// Why it could not show.
     pub why: String,
     /// The smallest size that they would show, and its unit.
     pub smallest: Option<f64>,
+    /// Of the size.
     pub unit: &'static str,
 }
 
 /// What the flights could show of an effect.
 #[derive(Clone, Debug, Serialize)]
 pub struct Detectable {
+    /// Identifier.
     pub effect: &'static str,
     /// The smallest size that they show, and that they tell from the nearest rival.
     pub smallest: f64,
+    /// The smallest size that they tell from the nearest rival.
     pub told_apart: f64,
+    /// That rival.
     pub nearest: Option<&'static str>,
+    /// Of the sizes.
     pub unit: &'static str,
+    /// From where to where it usually lies.
     pub typical: [f64; 2],
+    /// What shows it best.
     pub manoeuvre: &'static str,
 }
 
 /// Open-loop errors before and after.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Ahead {
+    /// With the base vehicle.
     pub before: Horizon,
+    /// With the extended one.
     pub after: Horizon,
 }
 
 /// A channel before and after.
 #[derive(Clone, Debug, Serialize)]
 pub struct Residual {
+    /// RMS with the base vehicle.
     pub before: f64,
+    /// RMS with the extended one.
     pub after: f64,
     /// Standard deviation of what is unpredictable in it.
     pub noise: f64,
+    /// Of all three.
     pub unit: &'static str,
+    /// Share of the variance that the base vehicle explains.
     pub r2_before: f64,
+    /// The same with the extended one.
     pub r2_after: f64,
 }
 
 /// Everything that a diagnosis found.
 #[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
+    /// The answer in a word.
     pub verdict: Verdict,
+    /// Names of the logs.
     pub logs: Vec<String>,
+    /// Name of the base vehicle.
     pub base: String,
+    /// Usable flight, s.
     pub usable_s: f64,
     /// By impact.
     pub findings: Vec<Finding>,
+    /// What no effect explains.
     pub unexplained: Vec<Structure>,
+    /// Effects that these flights could not show.
     pub not_detectable: Vec<NotDetectable>,
+    /// Effects that they could.
     pub detectable: Vec<Detectable>,
+    /// Numbers of the compact model that have moved.
     pub drift: Vec<Drift>,
     /// One step ahead, on the flight that was fitted.
     pub residuals: BTreeMap<&'static str, Residual>,
     /// On flight that was not used for fitting.
     pub held_out: BTreeMap<&'static str, Gain>,
+    /// Open-loop errors, by how far ahead.
     pub horizons: Vec<Ahead>,
     /// Share of what could be gained at most that was gained, on flight that was not used for fitting.
     pub captured: Option<f64>,
     /// Structure before and after, by channel.
     pub structure_before: Vec<Structure>,
+    /// The same after.
     pub structure: Vec<Structure>,
 }
 

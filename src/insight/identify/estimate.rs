@@ -6,8 +6,11 @@ use serde::Serialize;
 /// A value and its 95 % confidence interval; where `why` is set, the logs cannot tell it and the numbers are null.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Estimate {
+    /// The best value.
     pub value: Option<f64>,
+    /// Lower end of the interval.
     pub low: Option<f64>,
+    /// Upper end of the interval.
     pub high: Option<f64>,
     /// Why the logs cannot tell it, or what else to know about it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -29,6 +32,7 @@ impl Estimate {
         Self::new(value, solution.half_width(i))
     }
 
+    /// None, and why.
     pub fn unknown(why: impl Into<String>) -> Self {
         Self { why: Some(why.into()), ..Self::default() }
     }
@@ -39,6 +43,7 @@ impl Estimate {
         Self { value: scaled(self.value), low: scaled(self.low), high: scaled(self.high), why: self.why.clone() }
     }
 
+    /// The interval, where there is one.
     pub fn interval(&self) -> Option<[f64; 2]> {
         Some([self.low?, self.high?])
     }

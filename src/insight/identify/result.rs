@@ -12,13 +12,19 @@ use serde::Serialize;
 /// A first-order response: a row of the paper's Table 1. Scores are those of the validation part.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Response {
+    /// Time constant, s.
     pub tau_s: Estimate,
     /// Constant that the measurement has too much, in `unit`.
     pub offset: Estimate,
+    /// Root mean square error, in `unit`.
     pub rmse: Option<f64>,
+    /// Mean absolute error, in `unit`.
     pub mae: Option<f64>,
+    /// Share of the variance that is explained.
     pub r2: Option<f64>,
+    /// Samples that were fitted.
     pub n_train: usize,
+    /// Samples that it is scored on.
     pub n_validation: usize,
     /// Of offset, RMSE and MAE.
     pub unit: &'static str,
@@ -31,6 +37,7 @@ pub struct Drag {
     pub k_1_m: [Estimate; 3],
     /// The ellipsoid with these, given its coefficient.
     pub semi_axes_m: Option<[f64; 3]>,
+    /// The base vehicle's drag coefficient, without unit.
     pub coefficient: Option<f64>,
     /// 99 % of the speed in flight, m/s.
     pub flown_m_s: Option<f64>,
@@ -45,7 +52,9 @@ impl Drag {
 /// Discharge.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Battery {
+    /// Voltage at the start, V.
     pub initial_v: Estimate,
+    /// Change of the voltage, V/s.
     pub rate_v_s: Estimate,
     /// Of the line, on the validation part, V.
     pub score: Option<Score>,
@@ -54,9 +63,13 @@ pub struct Battery {
 /// A signal, measured and predicted, over training and validation part.
 #[derive(Clone, Debug)]
 pub struct Channel {
+    /// What was measured.
     pub name: String,
+    /// Of its numbers.
     pub unit: &'static str,
+    /// On the part that was fitted.
     pub train: Compared,
+    /// On the rest.
     pub validation: Compared,
 }
 
@@ -78,21 +91,27 @@ pub struct Identification {
     pub vehicle: Vehicle,
     /// Roll, pitch, yaw, thrust.
     pub response: [Response; 4],
+    /// Body rates at full command, rad/s.
     pub max_rate_rad_s: [Estimate; 3],
     /// c0..c5 of Eq. 7 for the command in [-1, 1], N.
     pub thrust_n: [Estimate; 6],
+    /// Drag.
     pub drag: Drag,
+    /// Discharge.
     pub battery: Battery,
+    /// Constant error of the accelerometer along x, y, z, m/s2.
     pub accelerometer_bias_m_s2: [Estimate; 3],
     /// Body rates that a full command asks for, rad/s.
     pub full_rate_rad_s: [f64; 3],
     /// 1 and 99 % of the thrust command in flight, -1..1.
     pub flown: Option<[f64; 2]>,
+    /// 99 % of the speed in flight, m/s.
     pub fastest_m_s: Option<f64>,
     /// Usable flight of all logs, s.
     pub usable_s: f64,
     /// What a reader should know besides.
     pub remarks: Vec<String>,
+    /// Signals, measured and predicted; none where nothing could be told.
     pub channels: Vec<Channel>,
 }
 

@@ -10,6 +10,7 @@ use serde::Serialize;
 /// A group of parameters, and whether the log tells them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
+    /// What people call it.
     pub name: &'static str,
     /// Why the log cannot tell it; none where it can.
     pub why_not: Option<String>,

@@ -36,7 +36,9 @@ pub struct Iteration<'a, T> {
 /// Whether to go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
+    /// Go on.
     Continue,
+    /// End with what there is.
     Stop,
 }
 

@@ -16,6 +16,7 @@ pub struct Gate {
     pub pitch_deg: f64,
     /// Radius of the aperture, m.
     pub radius_m: f64,
+    /// Whether it stands there.
     pub kind: GateKind,
     /// Side of the square frame around it, for drawing only, m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -33,6 +34,7 @@ pub enum GateKind {
 }
 
 impl Gate {
+    /// Centre, m.
     pub fn position(&self) -> Vector3<f64> {
         self.position_m.into()
     }

@@ -21,6 +21,7 @@ pub struct Extension {
     /// training. None: they are not randomised.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub uncertain: Vec<String>,
+    /// The covariance of `uncertain`, in their units.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub covariance: Vec<Vec<f64>>,
 }
@@ -33,6 +34,7 @@ fn index(effect: &str, parameter: &str) -> Option<usize> {
 }
 
 impl Extension {
+    /// Whether there are no effects.
     pub fn is_empty(&self) -> bool {
         self.sizes.is_empty()
     }

@@ -10,11 +10,13 @@ use std::collections::BTreeMap;
 /// One start distribution's result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Benchmark {
+    /// Vehicles that flew.
     pub agents: usize,
     /// Share of agents that passed all gates in order and the first one again.
     pub lap_completion: f64,
     /// Time from the first crossing of the first gate to the next, over completed laps; none where no lap was completed.
     pub lap_time_s: Option<LapTime>,
+    /// Gates that they passed.
     pub gates_passed: GatesPassed,
     /// Highest speed of any agent, m/s.
     pub top_speed_m_s: f64,
@@ -28,17 +30,25 @@ pub struct Benchmark {
     pub sections: BTreeMap<String, f64>,
 }
 
+/// Lap times over the vehicles that completed one, s.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct LapTime {
+    /// Half of them are faster.
     pub median: f64,
+    /// 5 % are faster.
     pub p05: f64,
+    /// 95 % are faster.
     pub p95: f64,
+    /// The fastest.
     pub best: f64,
 }
 
+/// Gates passed, over all vehicles.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct GatesPassed {
+    /// Half of them passed no more.
     pub median: f64,
+    /// The mean.
     pub mean: f64,
 }
 
