@@ -226,6 +226,39 @@ fn ctrl_c_finishes_the_update_and_saves() {
     assert!(folder.path().join("run/metrics.csv").is_file());
 }
 
+/// Half of a comparison is none: it ends with a sentence and the exit code of an interruption.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_in_the_first_of_two_trainings_leaves_no_comparison() {
+    use std::io::{BufRead, BufReader, Read};
+    use std::process::{Command, Stdio};
+    let folder = tempfile::tempdir().unwrap();
+    let fly = ["fly", "--pilot", "--seconds", "40", "--vehicle", "seed_class", "--out", "flight.mcap"];
+    assert_eq!(racer(folder.path(), &fly).code, 0);
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin("racer"))
+        .current_dir(folder.path())
+        .args(["diagnose", "flight.mcap", "--vehicle", "seed_class", "--retrain", "10"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut err = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("steps/s") {
+        line.clear();
+        assert!(err.read_line(&mut line).unwrap() > 0, "the training ended by itself");
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let (mut rest, mut out) = (String::new(), String::new());
+    err.read_to_string(&mut rest).unwrap();
+    child.stdout.take().unwrap().read_to_string(&mut out).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(rest.contains("no comparison") && rest.contains("retrained"), "{rest}");
+    assert!(!out.contains("trained in the"), "no table of trainings: {out}");
+    assert!(folder.path().join("retrained/base/metrics.csv").is_file(), "what was trained is kept");
+    assert!(!folder.path().join("retrained/extended").exists());
+}
+
 #[test]
 fn bench_has_the_keys_that_it_promises() {
     let folder = tempfile::tempdir().unwrap();

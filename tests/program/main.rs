@@ -2,8 +2,10 @@
 
 mod cli;
 mod diagnose_report;
+mod examples;
 mod identify;
 mod import;
+mod library;
 mod show;
 mod study;
 #[path = "../support/mod.rs"]
