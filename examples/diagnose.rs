@@ -1,5 +1,5 @@
-//! From a flight log to what the simulation gets wrong: a vehicle flies with an effect that its model does not know, and
-//! the diagnosis names it.
+//! From a flight log to what the simulation gets wrong: a vehicle flies with an effect that its model does not know,
+//! and the diagnosis names it.
 //!
 //!     cargo run --release --example diagnose
 

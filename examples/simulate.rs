@@ -4,8 +4,8 @@
 
 use racer::{Error, Motion, Setup, Simulation, StartPlace, Vehicle};
 
-/// Flies `vehicle` to a point: the speed that is wanted asks for an acceleration, that for a direction of thrust, and that
-/// for body rates.
+/// Flies `vehicle` to a point: the speed that is wanted asks for an acceleration, that for a direction of thrust, and
+/// that for body rates.
 fn fly_to(point: [f64; 3], at: &Motion, vehicle: &Vehicle) -> [f32; 4] {
     let speed: [f64; 3] = std::array::from_fn(|k| 1.5 * (point[k] - at.position_m[k]).clamp(-2.0, 2.0));
     let mut force: [f64; 3] = std::array::from_fn(|k| 2.5 * (speed[k] - at.velocity_m_s[k]));

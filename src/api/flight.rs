@@ -12,9 +12,9 @@ use crate::model::vehicle::Vehicle;
 use std::path::Path;
 
 impl Log {
-    /// Reads a log: MCAP, Betaflight blackbox, PX4 ULog or CSV. What its fields mean is the format's own, or a built-in mapping that
-    /// fits. Nothing is repaired; [`crate::check`] does that. Of a damaged file the readable part is read, and [`Log::readable`] says
-    /// so.
+    /// Reads a log: MCAP, Betaflight blackbox, PX4 ULog or CSV. What its fields mean is the format's own, or a built-in
+    /// mapping that fits. Nothing is repaired; [`crate::check`] does that. Of a damaged file the readable part is read,
+    /// and [`Log::readable`] says so.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         Ok(open(path.as_ref(), None)?)
     }
@@ -30,15 +30,17 @@ impl Log {
     }
 }
 
-/// The excitation pilot flies `vehicle` in the simulator through all that identification needs, from the ground until it has landed,
-/// for at most `seconds`, and `sensors` record it. It lands early where the battery is empty before. `seed` decides the order of
-/// the manoeuvres and the errors of the sensors. Fails for less than 40 s, which take-off and landing need.
+/// The excitation pilot flies `vehicle` in the simulator through all that identification needs, from the ground until
+/// it has landed, for at most `seconds`, and `sensors` record it. It lands early where the battery is empty before.
+/// `seed` decides the order of the manoeuvres and the errors of the sensors. Fails for less than 40 s, which take-off
+/// and landing need.
 pub fn fly_pilot(vehicle: &Vehicle, sensors: &SensorConfig, seconds: f64, seed: u64) -> Result<Log, BadInput> {
     check_pilot("a pilot's flight", seconds)?;
     Ok(by_pilot(vehicle, sensors, &[], seed, seconds).log)
 }
 
-/// `policy` races from the pad of its track in `vehicle`, lap after lap, until it fails or for `seconds`, and `sensors` record it.
+/// `policy` races from the pad of its track in `vehicle`, lap after lap, until it fails or for `seconds`, and `sensors`
+/// record it.
 pub fn fly_policy(policy: &Policy, vehicle: &Vehicle, sensors: &SensorConfig, seconds: f64, seed: u64) -> Log {
     let race = policy.0.race(Some(vehicle)).scored(policy.track());
     by_policy(Level::best(), &race, &policy.0.network, sensors, seed, seconds).log

@@ -8,8 +8,9 @@ use crate::insight::identify::{self as identifying, Options, refuse};
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
 
-/// Identifies one vehicle from its checked logs, in the order of flight. `watch` is told each step and the share that is done, 0 to 1.
-/// Fails on a log that contradicts itself, such as a rate that goes against its setpoint, and where no parameter could be told.
+/// Identifies one vehicle from its checked logs, in the order of flight. `watch` is told each step and the share that
+/// is done, 0 to 1. Fails on a log that contradicts itself, such as a rate that goes against its setpoint, and where no
+/// parameter could be told.
 pub fn identify(logs: &[Quality], options: &Options, mut watch: impl FnMut(&str, f64)) -> Result<Identification> {
     options.check().map_err(|invalid| BadInput::at("options of identification", invalid))?;
     refuse::problems(logs)?;
@@ -18,8 +19,8 @@ pub fn identify(logs: &[Quality], options: &Options, mut watch: impl FnMut(&str,
     Ok(found)
 }
 
-/// Names what the simulation of `vehicle` gets wrong in these checked logs, with the vehicle extended by it. `watch` is told each step
-/// and the share that is done, 0 to 1.
+/// Names what the simulation of `vehicle` gets wrong in these checked logs, with the vehicle extended by it. `watch` is
+/// told each step and the share that is done, 0 to 1.
 pub fn diagnose(logs: &[Quality], vehicle: &Vehicle, mut watch: impl FnMut(&str, f64)) -> Diagnosed {
     diagnosing::diagnose(logs.to_vec(), vehicle, &mut watch)
 }

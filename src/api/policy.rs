@@ -17,8 +17,8 @@ use std::path::Path;
 pub struct Policy(pub(super) Snapshot);
 
 impl Policy {
-    /// Reads a snapshot file, or the policy of a run folder: its best, or its last where none was chosen. Fails where the
-    /// network does not answer as it did when it was written.
+    /// Reads a snapshot file, or the policy of a run folder: its best, or its last where none was chosen. Fails where
+    /// the network does not answer as it did when it was written.
     pub fn load(path: impl AsRef<Path>) -> Result<Self> {
         let found = find(&path.as_ref().display().to_string())?;
         Ok(Self(Snapshot::read(&found.snapshot)?))
@@ -29,7 +29,8 @@ impl Policy {
         self.0.write(path.as_ref())
     }
 
-    /// The commands to any number of observations: roll, pitch and yaw rate and thrust, each in [-1, 1], to be held for 10 ms.
+    /// The commands to any number of observations: roll, pitch and yaw rate and thrust, each in [-1, 1], to be held for
+    /// 10 ms.
     pub fn act(&self, observations: &[[f32; OBSERVATIONS]]) -> Vec<[f32; 4]> {
         act(&self.0.network, observations)
     }
@@ -50,9 +51,9 @@ impl Policy {
     }
 }
 
-/// Flies the deterministic policy on its track with `agents` vehicles from the pad, and with as many from places along the track,
-/// and scores the flights. The first vehicle is `vehicle`, the others have every parameter drawn about it. The result does not
-/// depend on the number of threads.
+/// Flies the deterministic policy on its track with `agents` vehicles from the pad, and with as many from places along
+/// the track, and scores the flights. The first vehicle is `vehicle`, the others have every parameter drawn about it.
+/// The result does not depend on the number of threads.
 pub fn evaluate(policy: &Policy, vehicle: &Vehicle, agents: usize) -> Result<Report> {
     use crate::base::check::{BadInput, Check};
     let Snapshot { network, about } = &policy.0;

@@ -35,8 +35,8 @@ impl Progress {
         Self { share, updates: index, steps, seconds, row }
     }
 
-    /// A number of the last update by its name in `metrics.csv`, such as `episode/gates`; none where there was nothing to average
-    /// over.
+    /// A number of the last update by its name in `metrics.csv`, such as `episode/gates`; none where there was nothing
+    /// to average over.
     pub fn metric(&self, name: &str) -> Option<f64> {
         self.row.get(name)
     }
@@ -62,8 +62,9 @@ pub struct Trained {
 }
 
 impl Trained {
-    /// Evaluates every policy as the set-up says, and returns the best with its score: the one with which most vehicles complete a
-    /// lap from the pad, of equals the fastest. Policies from a time when penalties were not yet whole do not count.
+    /// Evaluates every policy as the set-up says, and returns the best with its score: the one with which most vehicles
+    /// complete a lap from the pad, of equals the fastest. Policies from a time when penalties were not yet whole do
+    /// not count.
     pub fn best(&self) -> Result<(Policy, Report)> {
         let policies: Vec<_> = self.policies.iter().map(|policy| policy.0.clone()).collect();
         let flown = threads::on(None, || evaluate(Level::best(), &self.setup, &policies, &mut || false))?;
@@ -106,8 +107,8 @@ impl<F: FnMut(&Progress) -> Flow + Send> Watch for Closure<F> {
     }
 }
 
-/// Trains a policy as `setup` says, on all processors. `observer` is called after every update and says whether to go on. The same
-/// set-up with a budget of steps gives the same policies bit for bit, on any number of threads.
+/// Trains a policy as `setup` says, on all processors. `observer` is called after every update and says whether to go
+/// on. The same set-up with a budget of steps gives the same policies bit for bit, on any number of threads.
 pub fn train(setup: &Setup, observer: impl FnMut(&Progress) -> Flow + Send) -> Result<Trained> {
     let trained = threads::on(None, || train::train(Level::best(), setup, &mut Closure::new(observer)))?;
     let train::Trained { policies, steps, seconds, stopped } = trained;
@@ -115,9 +116,9 @@ pub fn train(setup: &Setup, observer: impl FnMut(&Progress) -> Flow + Send) -> R
     Ok(Trained { policies, steps, seconds, stopped, setup: setup.clone() })
 }
 
-/// [`train`] into the new or empty folder `out`: configuration, learning curves, every policy on the way, its evaluation, and the best
-/// policy with figures, as `racer train` does. Returns the best and its score. [`Error::Interrupted`] where the observer ends it; what
-/// was trained is in the folder then.
+/// [`train`] into the new or empty folder `out`: configuration, learning curves, every policy on the way, its
+/// evaluation, and the best policy with figures, as `racer train` does. Returns the best and its score.
+/// [`Error::Interrupted`] where the observer ends it; what was trained is in the folder then.
 pub fn train_into(
     out: impl AsRef<Path>,
     setup: &Setup,

@@ -42,7 +42,8 @@ pub struct Args {
     /// Fly this policy with and without what was found: a run folder, a snapshot file, or `latest`
     #[arg(long, value_name = "RUN|SNAPSHOT|latest")]
     policy: Option<String>,
-    /// Train a policy in the base and one in the extended vehicle for so many minutes each, and fly both in the extended one
+    /// Train a policy in the base and one in the extended vehicle for so many minutes each, and fly both in the
+    /// extended one
     #[arg(long, value_name = "MINUTES")]
     retrain: Option<f64>,
     /// New folder for the policies of --retrain [default: retrained]
@@ -62,9 +63,9 @@ pub struct Args {
     base: String,
 }
 
-const HELP: &str = "The flight is predicted from its commands by the simulator's own equations. What the residuals show is tested against a \
-catalogue of effects; those that are evident, replicated, of a size that matters, and leave nothing structured behind, are named, with \
-what they are worth on flight that was not used for fitting.
+const HELP: &str = "The flight is predicted from its commands by the simulator's own equations. What the residuals \
+show is tested against a catalogue of effects; those that are evident, replicated, of a size that matters, and leave \
+nothing structured behind, are named, with what they are worth on flight that was not used for fitting.
 
 Exit code 3 means that a log is damaged and that its readable part was used, 5 that --fail-on-effect found something.
 

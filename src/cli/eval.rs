@@ -33,8 +33,9 @@ pub struct Args {
     /// Vehicles: one nominal, all others with every factor drawn [default: as configured, 512]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     agents: Option<u32>,
-    /// Fly nominal vehicles in which one parameter at a time is wrong by a factor of 0.5 to 1.5, and print what that costs; from the
-    /// pad, with the noise of the training, without which all flights of a cell would be one [default: 128 agents in each cell]
+    /// Fly nominal vehicles in which one parameter at a time is wrong by a factor of 0.5 to 1.5, and print what that
+    /// costs; from the pad, with the noise of the training, without which all flights of a cell would be one [default:
+    /// 128 agents in each cell]
     #[arg(long, conflicts_with_all = ["start", "require"])]
     sensitivity: bool,
     /// Exit with code 4 where a smaller share than this of the fixed-start agents completes a lap
@@ -55,8 +56,9 @@ const HELP: &str = "The deterministic mean policy flies without observation or a
 apertures, for at most 1000 steps unless configured otherwise. The paper deploys a policy where 95 % of fixed-start \
 agents complete a lap: `racer eval latest --require 0.95`.
 
-Laps are measured flying, from a crossing of the first gate to its next. The reference lap beside them is that of a point mass \
-with the vehicle's thrust and least drag (`racer track show --help`); the ratio of a policy is always above 1.";
+Laps are measured flying, from a crossing of the first gate to its next. The reference lap beside them is that of a \
+point mass with the vehicle's thrust and least drag (`racer track show --help`); the ratio of a policy is always above \
+1.";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Start {

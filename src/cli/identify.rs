@@ -157,7 +157,8 @@ fn text(found: &Identification) -> String {
         let ratio = found.vehicle.thrust_to_weight();
         let beyond = if high < 0.9 { ", extrapolated" } else { "" };
         format!(
-            "\n\nthrust command flown from {low:.2} to {high:.2} (-1 to 1); full thrust is {ratio:.1} times the weight{beyond}"
+            "\n\nthrust command flown from {low:.2} to {high:.2} (-1 to 1); full thrust is {ratio:.1} times the \
+             weight{beyond}"
         )
     });
     format!("validated on the last 30 % of the flight\n\n{response}\n\n{values}{flown}{assumed}{remarks}")

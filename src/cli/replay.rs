@@ -43,10 +43,10 @@ pub struct Args {
     mapping: Option<String>,
 }
 
-const HELP: &str = "Three files are written. replay.html plays the flight in any browser, without a network: space plays, h \
-shows all keys. replay.mcap opens in Foxglove: gates, paths, vehicles, commands, what the policy saw, and a log of gates and laps; \
-foxglove-layout.json is a layout for it (Layouts, import from file). A log has to hold position and attitude; with --track its gates are shown, and \
-the times at which it passed them.
+const HELP: &str = "Three files are written. replay.html plays the flight in any browser, without a network: space \
+plays, h shows all keys. replay.mcap opens in Foxglove: gates, paths, vehicles, commands, what the policy saw, and a \
+log of gates and laps; foxglove-layout.json is a layout for it (Layouts, import from file). A log has to hold position \
+and attitude; with --track its gates are shown, and the times at which it passed them.
 
 Exit code 3 means that the log is damaged and that its readable part is shown.
 

@@ -23,8 +23,8 @@ pub struct Args {
 }
 
 const HELP: &str =
-    "The page, report.html, needs nothing beside it; the figures in it are there as SVG files, too. A study under \
-way is drawn as far as it is. The policy of a run is flown again: its lap from above, its commands, and how far randomised \
+    "The page, report.html, needs nothing beside it; the figures in it are there as SVG files, too. A study under way \
+is drawn as far as it is. The policy of a run is flown again: its lap from above, its commands, and how far randomised \
 vehicles fly from the nominal one.
 
 Examples:

@@ -54,7 +54,8 @@ fn text(document: &Document) -> String {
     let (charge, factors): (Vec<_>, Vec<_>) = parameters.iter().partition(|row| row.parameter == "charge");
     format!(
         "{} on {} in {}: {agents} flights a cell, with the training's noise; nominal {}\n\n\
-         laps completed, %, and median lap, s, with this factor on one parameter alone; * outside of what was trained\n{}\n\n\
+         laps completed, %, and median lap, s, with this factor on one parameter alone; * outside of what was \
+         trained\n{}\n\n\
          the same for the charge of the battery at the start, 0 empty, 1 full\n{}",
         document.snapshot,
         document.track,

@@ -60,12 +60,13 @@ const HELP: &str = "A study is a file with a grid. This one makes six runs:
   [grid]
   ppo.minibatches = [16, 64]
 
-Further keys: config (base configuration), steps in place of minutes, agents, section_share, jobs; [set] for keys that are \
-the same in all runs; [cases.GROUP] for named values of several keys together. Built in are paper_configurations, \
+Further keys: config (base configuration), steps in place of minutes, agents, section_share, jobs; [set] for keys that \
+are the same in all runs; [cases.GROUP] for named values of several keys together. Built in are paper_configurations, \
 cpu_configurations, seeds_paper, seeds, regularisation and regularisation_factorial.
 
-Every setting is checked before the first run begins. After any interruption the same command goes on, without repeating a \
-finished run; with --steps it ends in the same tables. Ctrl-C ends the runs under way, which are repeated then.
+Every setting is checked before the first run begins. After any interruption the same command goes on, without \
+repeating a finished run; with --steps it ends in the same tables. Ctrl-C ends the runs under way, which are repeated \
+then.
 
 Examples:
   racer study mine.toml

@@ -39,13 +39,13 @@ struct Show {
     svg: Option<PathBuf>,
 }
 
-const HELP: &str = "The reference lap is the fastest closed lap of a point mass: it has the vehicle's full thrust at the stated \
-voltage, in any direction at any time, gravity, and the drag of the attitude in which the vehicle has least; it crosses every \
-aperture anywhere within the radius that a pass is scored by, in the gate's direction, stays in the track's volume, and ends as \
-fast as it began. A vehicle has to turn before it can push, and flies in attitudes that brake more: it stays slower. The lap is \
-transcribed directly (places at equal times, accelerations by differences) and its time minimised by Newton's method through \
-logarithmic barriers, from several first laps, then refined twice. It is a local optimum, not a proven bound. Effects beyond \
-the compact model are left out.
+const HELP: &str = "The reference lap is the fastest closed lap of a point mass: it has the vehicle's full thrust at \
+the stated voltage, in any direction at any time, gravity, and the drag of the attitude in which the vehicle has \
+least; it crosses every aperture anywhere within the radius that a pass is scored by, in the gate's direction, stays \
+in the track's volume, and ends as fast as it began. A vehicle has to turn before it can push, and flies in attitudes \
+that brake more: it stays slower. The lap is transcribed directly (places at equal times, accelerations by \
+differences) and its time minimised by Newton's method through logarithmic barriers, from several first laps, then \
+refined twice. It is a local optimum, not a proven bound. Effects beyond the compact model are left out.
 
 Length and curvature are those of the reset spline, the paper's Catmull-Rom curve from the start through all gates.
 
@@ -154,8 +154,8 @@ fn text(track: &Track, document: &Document) -> String {
     });
     let laps = columns::table(&["", "s", "m", "mean m/s", "top m/s"], laps.collect(), 1..5);
     format!(
-        "{}\n\n{}\n\n{sections}reset spline: {length_m:.1} m, sharpest {curvature_1_m:.2} 1/m (radius {:.2} m) at {at_m:.1} m, \
-         on the way to gate {}\n\nreference lap of {}\n{laps}\n\n{}",
+        "{}\n\n{}\n\n{sections}reset spline: {length_m:.1} m, sharpest {curvature_1_m:.2} 1/m (radius {:.2} m) at \
+         {at_m:.1} m, on the way to gate {}\n\nreference lap of {}\n{laps}\n\n{}",
         document.track,
         columns::table(&header, gates.collect(), 1..7),
         1.0 / curvature_1_m,

@@ -30,9 +30,11 @@ pub struct Pair {
 /// The measured figures.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
-    /// The model alone ([`crate::model::dynamics::step`]), commands held for a rollout's length, 2048 vehicles a thread.
+    /// The model alone ([`crate::model::dynamics::step`]), commands held for a rollout's length, 2048 vehicles a
+    /// thread.
     pub physics_steps_per_s: Pair,
-    /// The whole environment: physics, gates, reward, resets, observation and all noise, under held commands; no policy.
+    /// The whole environment: physics, gates, reward, resets, observation and all noise, under held commands; no
+    /// policy.
     pub environment_steps_per_s: Pair,
     /// The environment with the policy: what training collects experience with.
     pub rollout_steps_per_s: Pair,

@@ -1,7 +1,7 @@
 //! A flight to be shown: where each vehicle was, what it was told, and through which gates it flew.
 //!
-//! Made of a policy's race in the simulator ([`race`]) or of a flight log ([`recorded`]); shown as an MCAP file for Foxglove
-//! ([`mcap`]) or as a page ([`crate::present::report::replay`]).
+//! Made of a policy's race in the simulator ([`race`]) or of a flight log ([`recorded`]); shown as an MCAP file for
+//! Foxglove ([`mcap`]) or as a page ([`crate::present::report::replay`]).
 
 mod foxglove;
 mod layout;

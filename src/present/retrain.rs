@@ -25,8 +25,9 @@ pub fn fly(policy: &Snapshot, vehicle: &Vehicle) -> Result<Benchmark> {
     threads::on(None, || benchmark(Level::best(), &race, &about.track, &policy.network, Place::Pad, &about.eval).0)
 }
 
-/// Trains one policy in each of two vehicles for `minutes`, each in a folder of its name in the new folder `to`, and flies both in
-/// the second vehicle. [`Error::Interrupted`] where whoever watches asks to stop: half of a comparison is none.
+/// Trains one policy in each of two vehicles for `minutes`, each in a folder of its name in the new folder `to`, and
+/// flies both in the second vehicle. [`Error::Interrupted`] where whoever watches asks to stop: half of a comparison is
+/// none.
 pub fn retrain(
     to: &Path,
     minutes: f64,

@@ -3,7 +3,7 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `command.txt` | the command line |
-//! | `config.toml`, `track.toml`, `vehicle.toml` | what it resolved to; `racer train --config RUN/config.toml` repeats the run |
+//! | `config.toml`, `track.toml`, `vehicle.toml` | what it resolved to; `--config RUN/config.toml` repeats it |
 //! | `provenance.json` | version, machine, SIMD level, threads, time |
 //! | `metrics.csv`, `tensorboard/` | one row an iteration |
 //! | `snapshots/` | policies on the way, named by environment steps |
@@ -44,8 +44,8 @@ pub struct Run {
 }
 
 impl Run {
-    /// A new folder: `out`, or one below `runs/` named by time and `name`. Fails where it cannot be written to, and where
-    /// `out` already holds anything.
+    /// A new folder: `out`, or one below `runs/` named by time and `name`. Fails where it cannot be written to, and
+    /// where `out` already holds anything.
     pub fn create(out: Option<&Path>, name: &str) -> Result<Self, BadInput> {
         let folder = match out {
             Some(out) => out.to_path_buf(),

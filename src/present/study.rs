@@ -1,4 +1,5 @@
-//! Studies: a grid of settings times seeds, each run under the same budget, and what can be said about the settings then.
+//! Studies: a grid of settings times seeds, each run under the same budget, and what can be said about the settings
+//! then.
 //!
 //! A study's folder:
 //!
@@ -8,7 +9,7 @@
 //! | `plan.json` | all settings and runs that it resolved to |
 //! | `runs/RUN/` | a finished run, as `racer train` leaves it, with its `result.json`; appears all at once |
 //! | `runs.csv`, `timing.csv` | a line each finished run: what it reached; on what clock |
-//! | `settings.csv`, `axes.csv` | the same over the seeds of each setting, and over all runs that share a value of an axis |
+//! | `settings.csv`, `axes.csv` | the same over the seeds of a setting, and over all runs with a value of an axis |
 //! | `ranking.csv` | the settings in order, with what their seeds leave open |
 //! | `results.json` | all of these tables, and their methods in words |
 //!

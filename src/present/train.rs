@@ -114,7 +114,8 @@ fn save(run: &Run, trained: &Trained, started: SystemTime, rows: &[Row]) -> Resu
     Ok(())
 }
 
-/// Evaluates all policies, in their order, each with the nominal vehicle's flight from the pad; none where `stop` says so in between.
+/// Evaluates all policies, in their order, each with the nominal vehicle's flight from the pad; none where `stop` says
+/// so in between.
 pub fn evaluate(
     level: Level,
     setup: &Setup,

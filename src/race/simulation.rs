@@ -21,10 +21,11 @@ const MOST: usize = 1 << 24;
 /// How a block rests in memory between steps.
 type Rest = Block<Portable<f32>>;
 
-/// Many vehicles that race on one track, each for itself: the environment that policies are trained in, to be stepped by hand.
+/// Many vehicles that race on one track, each for itself: the environment that policies are trained in, to be stepped
+/// by hand.
 ///
-/// The first vehicle is nominal, the others have every parameter drawn as the set-up says, and so are noise and delays. All follow
-/// from the set-up's seed, whatever the number of threads; work runs on the current rayon pool.
+/// The first vehicle is nominal, the others have every parameter drawn as the set-up says, and so are noise and delays.
+/// All follow from the set-up's seed, whatever the number of threads; work runs on the current rayon pool.
 #[derive(Clone, Debug)]
 pub struct Simulation {
     level: Level,
@@ -81,7 +82,8 @@ pub enum Ending {
 }
 
 impl Simulation {
-    /// So many vehicles at `place`, with the set-up's track, vehicle, rules and seed. Fails for none, or more than 2^24.
+    /// So many vehicles at `place`, with the set-up's track, vehicle, rules and seed. Fails for none, or more than
+    /// 2^24.
     pub fn new(setup: &Setup, vehicles: usize, place: Place) -> Result<Self, BadInput> {
         if !(1..=MOST).contains(&vehicles) {
             return Err(BadInput::new("a simulation", format!("{vehicles} vehicles"), &format!("1 to {MOST}"), ""));
@@ -128,8 +130,8 @@ impl Simulation {
         all
     }
 
-    /// One step of 10 ms: `commands[i]` is what vehicle `i` is told, roll, pitch and yaw rate and thrust, each limited to
-    /// [-1, 1]. Fails unless there is one for each vehicle and all are numbers.
+    /// One step of 10 ms: `commands[i]` is what vehicle `i` is told, roll, pitch and yaw rate and thrust, each limited
+    /// to [-1, 1]. Fails unless there is one for each vehicle and all are numbers.
     pub fn step(&mut self, commands: &[[f32; ACTIONS]]) -> Result<Vec<Transition>, BadInput> {
         let vehicles = self.vehicles;
         if commands.len() != vehicles {

@@ -19,7 +19,8 @@ pub struct Trained {
     pub stopped: bool,
 }
 
-/// Trains on the current rayon pool. The same set-up with a budget of steps gives the same policies on any number of threads.
+/// Trains on the current rayon pool. The same set-up with a budget of steps gives the same policies on any number of
+/// threads.
 pub fn train(level: Level, setup: &Setup, observer: &mut dyn Observer<Tally>) -> Trained {
     let Setup { config, track, vehicle } = setup;
     let race = Race::new(&config.env, track, vehicle, config.seed);

@@ -1,4 +1,5 @@
-//! How far a study is: a bar over runs and a line a run under way on a terminal; elsewhere a line when a run begins or ends.
+//! How far a study is: a bar over runs and a line a run under way on a terminal; elsewhere a line when a run begins or
+//! ends.
 
 use crate::cli::progress::clock;
 use crate::cli::tell;

@@ -13,7 +13,8 @@ pub fn results(results: &Results) -> String {
         text += &format!("\n\n{}", groups(axis, levels));
     }
     let best = results.ranking.iter().any(|place| place.best.is_some());
-    text += "\n\nlaps: share of fixed-start agents that complete a lap with a run's best snapshot, mean over seeds (95 %, Student's t).";
+    text += "\n\nlaps: share of fixed-start agents that complete a lap with a run's best snapshot, mean over \
+             seeds (95 %, Student's t).";
     if best {
         text +=
             "\nbest, ranks: share of 10000 draws of the seeds in which a setting is best; 95 % of its ranks in them.";

@@ -61,7 +61,8 @@ fn entity(ns: u64, frame: &str, id: &str, locked: bool, parts: Value) -> Value {
         "lifetime": { "sec": 0, "nsec": 0 },
         "frame_locked": locked,
         "metadata": [],
-        "arrows": [], "cubes": [], "spheres": [], "cylinders": [], "lines": [], "triangles": [], "texts": [], "models": [],
+        "arrows": [], "cubes": [], "spheres": [], "cylinders": [],
+        "lines": [], "triangles": [], "texts": [], "models": [],
     });
     if let (Some(all), Value::Object(parts)) = (entity.as_object_mut(), parts) {
         all.extend(parts);

@@ -9,7 +9,9 @@ pub fn layout() -> Value {
     let plot = |title: &str, paths: &[(&str, &str)]| {
         let paths: Vec<_> = paths
             .iter()
-            .map(|(path, label)| json!({ "value": path, "label": label, "enabled": true, "timestampMethod": "receiveTime" }))
+            .map(|(path, label)| {
+                json!({ "value": path, "label": label, "enabled": true, "timestampMethod": "receiveTime" })
+            })
             .collect();
         json!({ "title": title, "paths": paths, "showLegend": true, "showXAxisLabels": true, "showYAxisLabels": true,
                 "legendDisplay": "floating", "isSynced": true, "xAxisVal": "timestamp" })

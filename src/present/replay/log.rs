@@ -11,8 +11,8 @@ use crate::race::env::gates::{crossing, frames};
 /// Longest gap that numbers are interpolated over, s.
 const REACH_S: f64 = 0.5;
 
-/// What `log` recorded, with the gates of `track` where it is known which track was flown. Fails where the log does not say where
-/// the vehicle was.
+/// What `log` recorded, with the gates of `track` where it is known which track was flown. Fails where the log does not
+/// say where the vehicle was.
 pub fn recorded(log: &Log, track: Option<&Track>) -> Result<Replay, BadInput> {
     let poses = &log.odometry;
     let known = |row: &[f64; 10]| row[..7].iter().all(|x| x.is_finite());

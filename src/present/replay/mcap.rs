@@ -1,4 +1,5 @@
-//! A flight as an MCAP file that Foxglove shows as it is: JSON messages of its well-known kinds, and plain ones to plot.
+//! A flight as an MCAP file that Foxglove shows as it is: JSON messages of its well-known kinds, and plain ones to
+//! plot.
 
 use super::foxglove::{self, body, stamp};
 use super::schema::schema;

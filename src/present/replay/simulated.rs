@@ -8,9 +8,9 @@ use crate::race::env::Race;
 use crate::race::env::terminate::CAUSES;
 use crate::race::heat::{Heat, Raced};
 
-/// `network` races on `track` in `vehicles` vehicles, at most [`crate::race::heat::MOST`], for at most `seconds`; with `one_lap`
-/// only until it has completed a lap. The first vehicle is nominal, the others are those of an evaluation; `race` is made scored
-/// first.
+/// `network` races on `track` in `vehicles` vehicles, at most [`crate::race::heat::MOST`], for at most `seconds`; with
+/// `one_lap` only until it has completed a lap. The first vehicle is nominal, the others are those of an evaluation;
+/// `race` is made scored first.
 pub fn race(
     level: Level,
     race: &Race,

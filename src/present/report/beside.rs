@@ -11,7 +11,8 @@ use plotters::prelude::{ChartBuilder, Color};
 const HEIGHT: u32 = 900;
 const SPEEDS: u32 = 260;
 
-/// An SVG of two flights over each other, each with a name and its positions, m, and velocities, m/s, every 10 ms; below, their speeds.
+/// An SVG of two flights over each other, each with a name and its positions, m, and velocities, m/s, every 10 ms;
+/// below, their speeds.
 pub fn svg(track: &Track, flights: &[(&str, &[[f64; 6]]); 2], title: &str) -> Result<String> {
     let styles = [BLUE.stroke_width(4), ORANGE.stroke_width(2)];
     let keys: Vec<_> = flights.iter().zip(styles).map(|((name, _), style)| (*name, style)).collect();

@@ -18,8 +18,8 @@ const HEIGHT: u32 = 760;
 const TITLES: u32 = 30;
 const SECONDS: f64 = JUDGED_STEPS as f64 * crate::model::constants::CONTROL_S;
 
-/// An SVG: roll, pitch and yaw rate and thrust, each from -1 to 1, of the `flights` (in the paper one with weak and one with strong
-/// regularisation); the limits of saturation are marked.
+/// An SVG: roll, pitch and yaw rate and thrust, each from -1 to 1, of the `flights` (in the paper one with weak and one
+/// with strong regularisation); the limits of saturation are marked.
 pub fn svg(flights: &[Commands]) -> Result<String> {
     const NAMES: [&str; 4] = ["roll rate", "pitch rate", "yaw rate", "thrust"];
     plot::svg(HEIGHT, |root| {

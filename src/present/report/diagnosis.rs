@@ -1,4 +1,5 @@
-//! A diagnosis as one page that needs nothing else: the verdict, what was found, what it is worth, what is left, figures.
+//! A diagnosis as one page that needs nothing else: the verdict, what was found, what it is worth, what is left,
+//! figures.
 
 mod figures;
 mod findings;
@@ -13,8 +14,10 @@ use maud::{Markup, PreEscaped, html};
 use std::path::Path;
 
 const STYLE: &str = ".verdict{font-size:1.25em}.finding{border-left:4px solid #0072b2;padding-left:1em;margin:1.5em 0}
-.finding.suspected{border-color:#999}.finding h3{margin:0}.finding p{margin:.4em 0}.status{font-weight:normal;color:#555}
-figure{margin:1.5em 0}figcaption{color:#555}code{font-size:.9em}td.text,th.text{text-align:left}summary{cursor:pointer}";
+.finding.suspected{border-color:#999}.finding h3{margin:0}.finding p{margin:.4em 0}
+.status{font-weight:normal;color:#555}
+figure{margin:1.5em 0}figcaption{color:#555}code{font-size:.9em}td.text,th.text{text-align:left}
+summary{cursor:pointer}";
 
 /// The page as HTML.
 pub fn page(diagnosed: &Diagnosed, figures: &Figures) -> String {
@@ -24,7 +27,8 @@ pub fn page(diagnosed: &Diagnosed, figures: &Figures) -> String {
         p class="verdict" { (sentence(&d.headline())) }
         p class="why" {
             (format!("Diagnosed by racer {} from {}.", env!("CARGO_PKG_VERSION"), logs(d)))
-            " Before means the compact model, fitted to these flights together with the constant errors of the IMU; after, the same with what was found."
+            " Before means the compact model, fitted to these flights together with the constant errors of the IMU; \
+             after, the same with what was found."
         }
         (findings::all(d))
         (tables::gain(d))
@@ -36,7 +40,8 @@ pub fn page(diagnosed: &Diagnosed, figures: &Figures) -> String {
             @let c = &shown.channel;
             h3 { (capital(c.name)) }
             p {
-                "Error " (digits(c.before, c.before, 3)) " " (unit(c.unit)) " before, " (digits(c.after, c.before, 3)) " after, root mean square; "
+                "Error " (digits(c.before, c.before, 3)) " " (unit(c.unit)) " before, " (digits(c.after, c.before, 3))
+                " after, root mean square; "
                 "its noise is about " (digits(c.noise, c.before, 3)) "."
             }
             @for figure in &shown.figures { (drawn(figure)) }
@@ -56,7 +61,9 @@ fn ahead(d: &Diagnosis, figures: &Figures) -> Markup {
         h2 { "Simulated ahead" }
         @match &figures.open_loop {
             Some(figure) => { (drawn(figure)) (tables::horizons(d)) }
-            None => { p { "These logs hold no velocity, or no commands of the thrust: nothing could be simulated ahead." } }
+            None => {
+                p { "These logs hold no velocity, or no commands of the thrust: nothing could be simulated ahead." }
+            }
         }
     }
 }

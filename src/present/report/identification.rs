@@ -15,13 +15,19 @@ pub fn page(found: &Identification, logs: &[CheckedLog]) -> Result<String> {
     let figures = found.channels.iter().map(figures::channel).collect::<Result<Vec<_>>>()?;
     let body = html! {
         h1 { "Vehicle " (found.vehicle.name) }
-        p { (format!("Identified by racer {} from {:.0} s of usable flight.", env!("CARGO_PKG_VERSION"), found.usable_s)) }
+        p {
+            "Identified by racer " (env!("CARGO_PKG_VERSION"))
+            (format!(" from {:.0} s of usable flight.", found.usable_s))
+        }
         (responses(found))
         (parameters(found))
         @if !found.remarks.is_empty() { h2 { "Remarks" } ul { @for remark in &found.remarks { li { (remark) } } } }
         (assumed(found))
         h2 { "Measured and predicted" }
-        p { "The line divides the part that the parameters were learned from and the part they are validated on. Below each: the residual." }
+        p {
+            "The line divides the part that the parameters were learned from and the part they are validated on. Below \
+             each: the residual."
+        }
         @for figure in &figures { (PreEscaped(figure)) }
         (checks(logs))
     };
@@ -33,7 +39,10 @@ fn responses(found: &Identification) -> Markup {
     html! {
         h2 { "Response" }
         table {
-            tr { th { "" } th { "tau, ms" } th { "95 % interval" } th { "RMSE" } th { "MAE" } th { "R²" } th { "training" } th { "validation" } }
+            tr {
+                th { "" } th { "tau, ms" } th { "95 % interval" } th { "RMSE" } th { "MAE" } th { "R²" }
+                th { "training" } th { "validation" }
+            }
             @for (name, r) in AXES.into_iter().chain(["thrust"]).zip(&found.response) {
                 tr {
                     td { (name) @if !r.unit.is_empty() { ", " (r.unit) } }
@@ -61,11 +70,17 @@ fn parameters(found: &Identification) -> Markup {
         table {
             tr { th { "" } th { "value" } th { "95 % interval" } }
             @for (name, estimate, digits, unit) in &found.parameters() {
-                tr { td { (name) ", " (unit) } td { (number(estimate.value, *digits)) } td { (interval(estimate, *digits)) } }
+                tr {
+                    td { (name) ", " (unit) }
+                    td { (number(estimate.value, *digits)) } td { (interval(estimate, *digits)) }
+                }
             }
         }
         @if let Some([low, high]) = found.flown {
-            p { (format!("The thrust curve was flown from command {low:.2} to {high:.2}; beyond that it is extrapolated.")) }
+            p {
+                (format!("The thrust curve was flown from command {low:.2} to {high:.2}; "))
+                "beyond that it is extrapolated."
+            }
         }
     }
 }

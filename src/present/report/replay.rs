@@ -26,7 +26,8 @@ pub fn page(replay: &Replay) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n{BODY}\n\
-         <script type=\"application/json\" id=\"data\">{data}</script>\n<script>\n\"use strict\";\n{}</script>\n</body>\n</html>\n",
+         <script type=\"application/json\" id=\"data\">{data}</script>\n<script>\n\
+         \"use strict\";\n{}</script>\n</body>\n</html>\n",
         SCRIPTS.join("\n")
     )
 }

@@ -43,7 +43,8 @@ fn best(results: &Results) -> Vec<usize> {
 /// The page as HTML.
 pub fn page(results: &Results, figures: &[Figure]) -> String {
     const STYLE: &str = "figure{margin:1.5em 0}figcaption{color:#555}code{font-size:.9em}td.text{text-align:left}
-.wide{overflow-x:auto}.wide table{font-size:.8em}.wide td{white-space:nowrap}.wide td,.wide th{padding:.2em .5em}dt{font-weight:bold}dd{margin:0 0 .5em 1.5em;color:#333}";
+.wide{overflow-x:auto}.wide table{font-size:.8em}.wide td{white-space:nowrap}
+.wide td,.wide th{padding:.2em .5em}dt{font-weight:bold}dd{margin:0 0 .5em 1.5em;color:#333}";
     let plan = &results.plan;
     let counts = format!(
         "{} of {} runs of {} each, {} settings; made by racer {}.",

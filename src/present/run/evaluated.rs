@@ -27,7 +27,8 @@ fn whole() -> f64 {
     1.0
 }
 
-/// Those that count: while the penalties still grow, a policy is not yet what was asked for. The last one, where they never were whole.
+/// Those that count: while the penalties still grow, a policy is not yet what was asked for. The last one, where they
+/// never were whole.
 pub fn counting(all: &[Evaluated]) -> &[Evaluated] {
     let first = all.iter().position(|e| e.penalty >= 1.0).unwrap_or(all.len().saturating_sub(1));
     &all[first..]

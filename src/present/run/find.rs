@@ -14,8 +14,8 @@ pub struct Found {
     pub run: Option<PathBuf>,
 }
 
-/// The policy that `name` means: of a run its best, or the last on the way where none was chosen. `latest` is the youngest
-/// run below `runs/`.
+/// The policy that `name` means: of a run its best, or the last on the way where none was chosen. `latest` is the
+/// youngest run below `runs/`.
 pub fn find(name: &str) -> Result<Found, BadInput> {
     let path = match name {
         "latest" => latest(Path::new(RUNS))?,

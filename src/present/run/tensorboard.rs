@@ -1,7 +1,7 @@
 //! The training log as a TensorBoard event file.
 //!
-//! The format is small: a chain of records (length, checksum, data, checksum), each a protocol buffer `Event`. The crates
-//! that write it bring a protocol-buffer compiler or a tensor library along, or are no longer kept up.
+//! The format is small: a chain of records (length, checksum, data, checksum), each a protocol buffer `Event`. The
+//! crates that write it bring a protocol-buffer compiler or a tensor library along, or are no longer kept up.
 
 use super::metrics::Row;
 use std::time::{SystemTime, UNIX_EPOCH};

@@ -58,8 +58,8 @@ pub struct Curves {
     pub runs: Vec<Curve>,
 }
 
-/// Reads the curves of everything that is finished. Returns can be compared only where all runs are paid alike; gates passed
-/// in an episode always can.
+/// Reads the curves of everything that is finished. Returns can be compared only where all runs are paid alike; gates
+/// passed in an episode always can.
 pub fn read(folder: &Folder, results: &Results) -> Result<Curves> {
     let (what, column) = match results.plan.same_reward {
         true => ("median episode reward", "episode/return_median"),

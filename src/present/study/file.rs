@@ -35,12 +35,14 @@ pub struct Study {
     pub minutes: Option<f64>,
     /// Budget of each run, environment steps: repeats bit for bit on any machine of the same vector width.
     pub steps: Option<u64>,
-    /// Vehicles that each snapshot is flown with, the first nominal; the configuration's `eval.agents` where there is none.
+    /// Vehicles that each snapshot is flown with, the first nominal; the configuration's `eval.agents` where there is
+    /// none.
     pub agents: Option<u64>,
     /// A section counts as learnt from the first snapshot on with which this share of the random-start agents pass it.
     #[serde(default = "tenth")]
     pub section_share: f64,
-    /// Runs at a time, each with its share of the processors. More finish a study sooner, one uses a wall-clock budget best.
+    /// Runs at a time, each with its share of the processors. More finish a study sooner, one uses a wall-clock budget
+    /// best.
     #[serde(default = "one")]
     pub jobs: usize,
     /// Keys that are the same in all settings.

@@ -27,8 +27,8 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// The folder at `path`, which is a study's, or is new or empty. Fails where a finished run in it was made with another
-    /// configuration than `planned` now asks for. Nothing is written yet.
+    /// The folder at `path`, which is a study's, or is new or empty. Fails where a finished run in it was made with
+    /// another configuration than `planned` now asks for. Nothing is written yet.
     pub fn open(path: &Path, planned: &Planned) -> Result<Self> {
         let folder = Self { path: path.into() };
         if !folder.path.join(PLAN).is_file() {

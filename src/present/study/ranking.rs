@@ -9,14 +9,16 @@ use std::cmp::Ordering;
 /// Times that the seeds are drawn again.
 const DRAWS: usize = 10_000;
 /// In words, for whoever reads the table.
-pub const METHOD: &str = "Score of a run: fixed-start lap completion of its best snapshot; between settings that complete equally many, \
-the median lap time, then the gates passed. Settings are ordered by the means of their runs. Uncertainty over seeds: bootstrap, 10000 draws. Each draw takes \
-as many runs of each setting as it has, with replacement, and widens their mean's distance from the setting's mean by \
-sqrt(n / (n - 1)), which corrects the variance of n draws; settings are then ranked, equal ones sharing their places. Given are the \
-share of draws in which a setting is best (shared likewise), and the interval that holds its rank in 95 % of draws. A setting with a \
-single run is drawn without uncertainty, and nothing is given where all have one.";
+pub const METHOD: &str = "Score of a run: fixed-start lap completion of its best snapshot; between settings that \
+complete equally many, the median lap time, then the gates passed. Settings are ordered by the means of their runs. \
+Uncertainty over seeds: bootstrap, 10000 draws. Each draw takes as many runs of each setting as it has, with \
+replacement, and widens their mean's distance from the setting's mean by sqrt(n / (n - 1)), which corrects the \
+variance of n draws; settings are then ranked, equal ones sharing their places. Given are the share of draws in which \
+a setting is best (shared likewise), and the interval that holds its rank in 95 % of draws. A setting with a single \
+run is drawn without uncertainty, and nothing is given where all have one.";
 
-/// What decides, larger for the better: fixed-start lap completion of a run, less median lap time, mean number of gates.
+/// What decides, larger for the better: fixed-start lap completion of a run, less median lap time, mean number of
+/// gates.
 pub type Score = [f64; 3];
 
 /// Lap time of a run that completes no lap, s: longer than any, and still a number to take means of.

@@ -54,7 +54,8 @@ pub struct About<'a> {
     pub threads: usize,
 }
 
-/// Reads the evaluations in the run folder `folder`. A section is passed from `section_share` of the random-start agents on.
+/// Reads the evaluations in the run folder `folder`. A section is passed from `section_share` of the random-start
+/// agents on.
 pub fn of(folder: &Path, about: &About, section_share: f64) -> Result<RunResult, BadInput> {
     let evaluated = evaluated::read(folder)?;
     summarised(&evaluated, about, section_share).ok_or_else(|| {
@@ -98,7 +99,8 @@ mod tests {
 
     fn evaluated(steps: u64, fixed: f64, ladder: f64) -> Evaluated {
         let benchmark = |completion: f64, ladder: f64| {
-            json!({"agents": 10, "lap_completion": completion, "lap_time_s": null, "top_speed_m_s": 0, "saturated_share": 0,
+            json!({"agents": 10, "lap_completion": completion, "lap_time_s": null, "top_speed_m_s": 0,
+                "saturated_share": 0,
                 "gates_passed": {"median": 0, "mean": 0}, "mean_action_change_sq": 0, "failures_by_gate": {},
                 "sections": {"ladder": ladder}})
         };

@@ -76,8 +76,8 @@ impl Results {
         Self { plan, metrics, runs, settings, axes, ranking }
     }
 
-    /// Whether times belong to the result: they do under a budget of time, and under one of steps they would differ from one
-    /// making of the same result to the next.
+    /// Whether times belong to the result: they do under a budget of time, and under one of steps they would differ
+    /// from one making of the same result to the next.
     pub fn timed(&self) -> bool {
         self.plan.minutes.is_some()
     }
@@ -98,8 +98,9 @@ impl Results {
         vec![
             (
                 "best snapshot",
-                "The one with the highest fixed-start lap completion among those trained under whole penalties; of equals the one with the shortest \
-                median lap, then with most gates passed, then the latest. All metrics of a run are its best snapshot's."
+                "The one with the highest fixed-start lap completion among those trained under whole penalties; of \
+                equals the one with the shortest median lap, then with most gates passed, then the latest. All metrics \
+                of a run are its best snapshot's."
                     .into(),
             ),
             (

@@ -85,11 +85,20 @@ fn rivals(f: &Finding) -> Markup {
     let others: Vec<&str> = f.members.iter().copied().filter(|id| *id != f.effect).collect();
     html! {
         @if !others.is_empty() {
-            p { b { "These flights do not tell it from " (list(&others)) "." } " To tell them apart, fly " (f.manoeuvre) "." }
+            p {
+                b { "These flights do not tell it from " (list(&others)) "." }
+                " To tell them apart, fly " (f.manoeuvre) "."
+            }
         } @else if f.status == Status::Suspected {
-            p { "To be surer, fly " (f.manoeuvre) "." @if !f.rivals.is_empty() { " It looks like " (list(&f.rivals)) "." } }
+            p {
+                "To be surer, fly " (f.manoeuvre) "."
+                @if !f.rivals.is_empty() { " It looks like " (list(&f.rivals)) "." }
+            }
         } @else if !f.rivals.is_empty() {
-            p class="why" { "It could be mistaken for " (list(&f.rivals)) ". What tells them apart: " (f.manoeuvre) "." }
+            p class="why" {
+                "It could be mistaken for " (list(&f.rivals)) ". What tells them apart: " (f.manoeuvre)
+                "."
+            }
         }
     }
 }

@@ -8,7 +8,10 @@ use maud::{Markup, html};
 pub fn gain(d: &Diagnosis) -> Markup {
     html! {
         h2 { "What it is worth" }
-        p { "Root mean square errors on flight that was not used for fitting, and the share of the variance that is predicted." }
+        p {
+            "Root mean square errors on flight that was not used for fitting, and the share of the variance that is \
+             predicted."
+        }
         table {
             tr { th { "" } th { "before" } th { "after" } th { "change" } th { "R² before" } th { "R² after" } }
             @for (name, g) in &d.held_out {
@@ -37,7 +40,10 @@ pub fn horizons(d: &Diagnosis) -> Markup {
     let pair = |before: f64, after: f64| format!("{} → {}", digits(before, before, 3), digits(after, before, 3));
     html! {
         table {
-            tr { th { "left alone for" } th { "velocity, m/s off" } th { "position, m off" } th { "attitude, deg off" } th { "starts" } }
+            tr {
+                th { "left alone for" } th { "velocity, m/s off" } th { "position, m off" }
+                th { "attitude, deg off" } th { "starts" }
+            }
             @for a in &d.horizons {
                 tr {
                     td { (a.before.after_s) " s" }
@@ -56,10 +62,13 @@ pub fn structure(d: &Diagnosis) -> Markup {
     html! {
         h2 { "What is left unexplained" }
         @if d.unexplained.is_empty() {
-            p { (if d.verdict == Verdict::Clean { "Nothing: the errors are noise." } else { "Nothing: what remains is noise." }) }
+            p { "Nothing: " (if d.verdict == Verdict::Clean { "the errors are" } else { "what remains is" }) " noise." }
         } @else {
             table {
-                tr { th { "" } th { "structure" } th { "whole error" } th class="text" { "lines up with" } th class="text" { "is louder with" } }
+                tr {
+                    th { "" } th { "structure" } th { "whole error" }
+                    th class="text" { "lines up with" } th class="text" { "is louder with" }
+                }
                 @for s in &d.unexplained {
                     tr {
                         td { (s.channel) ", " (unit(s.unit)) }
@@ -71,7 +80,9 @@ pub fn structure(d: &Diagnosis) -> Markup {
                             }
                         }
                         td class="text" {
-                            @if let Some(along) = s.variance_along { (along) (format!(", {:.1} times", s.variance_ratio)) }
+                            @if let Some(along) = s.variance_along {
+                                (along) (format!(", {:.1} times", s.variance_ratio))
+                            }
                         }
                     }
                 }
@@ -118,7 +129,10 @@ pub fn hidden(d: &Diagnosis) -> Markup {
         details {
             summary { "What would have shown, and from which size" }
             table {
-                tr { th { "" } th { "seen from" } th { "told apart from" } th class="text" { "nearest rival" } th { "typical" } th class="text" { "" } }
+                tr {
+                    th { "" } th { "seen from" } th { "told apart from" } th class="text" { "nearest rival" }
+                    th { "typical" } th class="text" { "" }
+                }
                 @for p in &d.detectable {
                     tr {
                         td { code { (p.effect) } }

@@ -17,8 +17,8 @@ const PANEL: u32 = 380;
 /// Of the share of agents that complete a lap.
 pub fn completion(results: &Results, curves: &Curves) -> Result<Figure> {
     let what = What { name: "seed-bands-completion", axis: "fixed starts that lap, %", of: |curve| &curve.completion };
-    let caption = "Fixed-start lap completion of the snapshots: median and quartiles over the seeds of each of the best settings. Dashed: 95 %, \
-ready for deployment.";
+    let caption = "Fixed-start lap completion of the snapshots: median and quartiles over the seeds of each of the \
+best settings. Dashed: 95 %, ready for deployment.";
     draw(results, curves, &what, Some(0.0..105.0), false, caption.into())
 }
 
@@ -26,8 +26,8 @@ ready for deployment.";
 pub fn learning(results: &Results, curves: &Curves) -> Result<Figure> {
     let what = What { name: "seed-bands-learning", axis: curves.what, of: |curve| &curve.learning };
     let caption = format!(
-        "Learning curves: median and quartiles over the seeds of each of the best settings. Shapes: where the median seed has its first \
-snapshot with which {:.0} % of random-start agents pass a section.",
+        "Learning curves: median and quartiles over the seeds of each of the best settings. Shapes: where the median \
+seed has its first snapshot with which {:.0} % of random-start agents pass a section.",
         100.0 * results.plan.section_share
     );
     draw(results, curves, &what, None, true, caption)

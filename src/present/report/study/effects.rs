@@ -44,8 +44,8 @@ pub fn figure(results: &Results) -> Result<Option<Figure>> {
         }
         Ok(())
     })?;
-    let caption = "Each value of each axis: mean over all other axes and seeds, with its 95 % interval. The scale of a column is the same \
-in all rows.";
+    let caption = "Each value of each axis: mean over all other axes and seeds, with its 95 % interval. The scale of a \
+column is the same in all rows.";
     Ok(Some(Figure { name: "axes", caption: caption.into(), svg }))
 }
 

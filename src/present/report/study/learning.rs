@@ -42,8 +42,9 @@ pub fn figure(results: &Results, curves: &Curves) -> Result<Figure> {
     })?;
     let share = 100.0 * results.plan.section_share;
     let caption = format!(
-        "Learning curves of {} runs, smoothed. In colour: of each of the best settings the run that laps most. Shapes: the first \
-snapshot with which {share:.0} % of random-start agents pass a section. Stars: the snapshot chosen by fixed-start lap completion.",
+        "Learning curves of {} runs, smoothed. In colour: of each of the best settings the run that laps most. Shapes: \
+the first snapshot with which {share:.0} % of random-start agents pass a section. Stars: the snapshot chosen by \
+fixed-start lap completion.",
         curves.runs.len()
     );
     Ok(Figure { name: "learning-curves", caption, svg })

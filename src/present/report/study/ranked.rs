@@ -66,7 +66,8 @@ pub fn figure(results: &Results) -> Result<Figure> {
         }
         Ok(())
     })?;
-    let caption = "Settings by mean fixed-start lap completion of their runs' best snapshots (bars, with the 95 % interval of the mean where there are \
-several seeds); dots are runs. Dashed: 95 %, ready for deployment. To the right: how often a setting is the best, and where it ranks, when the seeds are drawn again.";
+    let caption = "Settings by mean fixed-start lap completion of their runs' best snapshots (bars, with the 95 % \
+interval of the mean where there are several seeds); dots are runs. Dashed: 95 %, ready for deployment. To the right: \
+how often a setting is the best, and where it ranks, when the seeds are drawn again.";
     Ok(Figure { name: "ranking", caption: caption.into(), svg })
 }

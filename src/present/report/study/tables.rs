@@ -23,7 +23,8 @@ pub fn ranking(results: &Results) -> Markup {
         h2 { "Ranking" }
         div class="wide" { table {
             tr {
-                th { "setting" } th { "runs" } th { "laps, % (95 %)" } th { "ready" } th { "best, %" } th { "ranks, 95 %" }
+                th { "setting" } th { "runs" } th { "laps, % (95 %)" } th { "ready" } th { "best, %" }
+                th { "ranks, 95 %" }
                 @for (heading, ..) in COLUMNS { th { (heading) } }
             }
             @for place in &results.ranking {
@@ -49,7 +50,10 @@ pub fn axes(results: &Results) -> Markup {
             p { "Each value's mean over all settings and seeds that have it." }
             @for (axis, levels) in &results.axes {
                 div class="wide" { table {
-                    tr { th { (axis) } th { "runs" } th { "laps, % (95 %)" } th { "ready" } @for (heading, ..) in COLUMNS { th { (heading) } } }
+                    tr {
+                        th { (axis) } th { "runs" } th { "laps, % (95 %)" } th { "ready" }
+                        @for (heading, ..) in COLUMNS { th { (heading) } }
+                    }
                     @for group in levels { tr { td { (group.name) } (laps(group)) (means(group)) } }
                 } }
             }
@@ -112,7 +116,10 @@ pub fn runs(results: &Results) -> Markup {
             div class="wide" { table {
                 tr { th { "run" } @for metric in &results.metrics { th { (metric.name) } } }
                 @for run in results.runs.iter().flatten() {
-                    tr { td { (run.run) } @for metric in &results.metrics { td { (metric.of(run).map_or("-".into(), short)) } } }
+                    tr {
+                        td { (run.run) }
+                        @for metric in &results.metrics { td { (metric.of(run).map_or("-".into(), short)) } }
+                    }
                 }
             } }
         }
