@@ -67,7 +67,7 @@ Exit codes:
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Outcome {
+enum CommandEnd {
     Done,
     Failed,
     Refused,
@@ -77,16 +77,16 @@ enum Outcome {
     Interrupted,
 }
 
-impl Outcome {
+impl CommandEnd {
     fn code(self) -> u8 {
         match self {
-            Outcome::Done => 0,
-            Outcome::Failed => 1,
-            Outcome::Refused => 2,
-            Outcome::Damaged => 3,
-            Outcome::NotMet => 4,
-            Outcome::Effect => 5,
-            Outcome::Interrupted => 130,
+            CommandEnd::Done => 0,
+            CommandEnd::Failed => 1,
+            CommandEnd::Refused => 2,
+            CommandEnd::Damaged => 3,
+            CommandEnd::NotMet => 4,
+            CommandEnd::Effect => 5,
+            CommandEnd::Interrupted => 130,
         }
     }
 }
@@ -109,21 +109,21 @@ pub fn main() -> ExitCode {
         Command::Report(args) => report::run(&args),
         Command::Bench(args) => bench::run(&args),
     };
-    let code = result.map(Outcome::code).unwrap_or_else(|error| {
+    let code = result.map(CommandEnd::code).unwrap_or_else(|error| {
         let outcome = ended(&error);
-        tell(&if outcome == Outcome::Interrupted { error.to_string() } else { format!("error: {error:#}") });
+        tell(&if outcome == CommandEnd::Interrupted { error.to_string() } else { format!("error: {error:#}") });
         outcome.code()
     });
     ExitCode::from(code)
 }
 
 /// How a command ended that failed.
-fn ended(error: &anyhow::Error) -> Outcome {
+fn ended(error: &anyhow::Error) -> CommandEnd {
     match error.downcast_ref::<Error>() {
-        Some(Error::Interrupted(_)) => Outcome::Interrupted,
-        Some(Error::BadInput(_)) => Outcome::Refused,
-        _ if error.is::<BadInput>() => Outcome::Refused,
-        _ => Outcome::Failed,
+        Some(Error::Interrupted(_)) => CommandEnd::Interrupted,
+        Some(Error::BadInput(_)) => CommandEnd::Refused,
+        _ if error.is::<BadInput>() => CommandEnd::Refused,
+        _ => CommandEnd::Failed,
     }
 }
 

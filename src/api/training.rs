@@ -7,8 +7,8 @@ use crate::base::threads;
 use crate::learn::ppo::train::{Flow, Iteration, Observer};
 use crate::present::run::Run;
 use crate::present::run::evaluated;
-use crate::present::run::metrics::Row;
-use crate::present::train::{Ended, Watch, evaluate, make};
+use crate::present::run::metrics::LogRow;
+use crate::present::train::{Ended, TrainingWatch, evaluate, make};
 use crate::race::config::Setup;
 use crate::race::env::tally::Tally;
 use crate::race::eval::Report;
@@ -26,11 +26,11 @@ pub struct Progress {
     pub steps: u64,
     /// Time since the training began, s.
     pub seconds: f64,
-    row: Row,
+    row: LogRow,
 }
 
 impl Progress {
-    fn new(iteration: &Iteration<Tally>, row: Row) -> Self {
+    fn new(iteration: &Iteration<Tally>, row: LogRow) -> Self {
         let &Iteration { index, share, steps, seconds, .. } = iteration;
         Self { share, updates: index, steps, seconds, row }
     }
@@ -91,14 +91,14 @@ impl<F: FnMut(&Progress) -> Flow> Closure<F> {
 
 impl<F: FnMut(&Progress) -> Flow> Observer<Tally> for Closure<F> {
     fn iteration(&mut self, iteration: &Iteration<Tally>) -> Flow {
-        let row = Row::new(iteration, iteration.seconds - self.last_s);
+        let row = LogRow::new(iteration, iteration.seconds - self.last_s);
         self.last_s = iteration.seconds;
         (self.observer)(&Progress::new(iteration, row))
     }
 }
 
-impl<F: FnMut(&Progress) -> Flow + Send> Watch for Closure<F> {
-    fn iteration(&mut self, iteration: &Iteration<Tally>, row: &Row) {
+impl<F: FnMut(&Progress) -> Flow + Send> TrainingWatch for Closure<F> {
+    fn iteration(&mut self, iteration: &Iteration<Tally>, row: &LogRow) {
         self.flow = (self.observer)(&Progress::new(iteration, row.clone()));
     }
 
@@ -111,7 +111,7 @@ impl<F: FnMut(&Progress) -> Flow + Send> Watch for Closure<F> {
 /// on. The same set-up with a budget of steps gives the same policies bit for bit, on any number of threads.
 pub fn train(setup: &Setup, observer: impl FnMut(&Progress) -> Flow + Send) -> Result<Trained> {
     let trained = threads::on(None, || train::train(Level::best(), setup, &mut Closure::new(observer)))?;
-    let train::Trained { policies, steps, seconds, stopped } = trained;
+    let train::TrainedPolicies { policies, steps, seconds, stopped } = trained;
     let policies = policies.into_iter().map(Policy).collect();
     Ok(Trained { policies, steps, seconds, stopped, setup: setup.clone() })
 }

@@ -1,9 +1,9 @@
 //! `racer bench`: how fast this machine is.
 
 use super::values::threads;
-use super::{Outcome, tell};
+use super::{CommandEnd, tell};
 use crate::base::lane::Level;
-use crate::present::bench::{Figures, Pair, measure};
+use crate::present::bench::{BenchFigures, Pair, measure};
 use crate::race::config::{DEFAULT, Setup};
 use serde::Serialize;
 use std::time::Duration;
@@ -40,7 +40,7 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 
 /// What `--json` prints: names and shapes that scripts rely on.
 #[derive(Serialize)]
-struct Report<'a> {
+struct BenchReport<'a> {
     physics_steps_per_s: Pair,
     environment_steps_per_s: Pair,
     rollout_steps_per_s: Pair,
@@ -56,18 +56,18 @@ struct Report<'a> {
 }
 
 /// Measures and prints.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let Setup { config, track, vehicle } = Setup::load(DEFAULT, &[])?;
     tell(&format!("measuring, about {:.0} s", args.seconds));
     let time = Duration::from_secs_f64(args.seconds);
     let figures = measure(&config, &track, &vehicle, Level::best(), threads(args.threads), time);
     let text = if args.json { serde_json::to_string_pretty(&report(&figures))? } else { table(&figures) };
     super::print(&text)?;
-    Ok(Outcome::Done)
+    Ok(CommandEnd::Done)
 }
 
-fn report(figures: &Figures) -> Report<'_> {
-    Report {
+fn report(figures: &BenchFigures) -> BenchReport<'_> {
+    BenchReport {
         physics_steps_per_s: figures.physics_steps_per_s,
         environment_steps_per_s: figures.environment_steps_per_s,
         rollout_steps_per_s: figures.rollout_steps_per_s,
@@ -82,7 +82,7 @@ fn report(figures: &Figures) -> Report<'_> {
     }
 }
 
-fn table(figures: &Figures) -> String {
+fn table(figures: &BenchFigures) -> String {
     let row = |name: &str, pair: Pair, unit: f64, unit_name: &str| {
         let [one, all] = [pair.one_thread, pair.all_threads].map(|value| value / unit);
         format!("{name:<14}{one:>12.2}{all:>14.2}   {unit_name}\n")

@@ -1,6 +1,6 @@
 //! `racer check`: what a flight log holds, and what is wrong with it.
 
-use super::{Outcome, findings, tell};
+use super::{CommandEnd, findings, tell};
 use crate::flight::spans::Span;
 use crate::flight::{self, Readable};
 use crate::insight::quality::{Finding, Parameter, Summary, check};
@@ -30,7 +30,7 @@ Examples:
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Document<'a> {
+struct CheckDocument<'a> {
     log: &'a str,
     streams: &'a [Summary],
     findings: &'a [Finding],
@@ -39,12 +39,12 @@ struct Document<'a> {
 }
 
 /// Reads, checks, prints.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let opened = flight::open_with(&args.log, flight::Options { mapping: args.mapping.as_deref(), flight: None })?;
     opened.remarks.iter().for_each(|remark| tell(remark));
     let quality = check(&opened.log);
     if args.json {
-        let document = Document {
+        let document = CheckDocument {
             log: &opened.log.name,
             streams: &quality.streams,
             findings: &quality.findings,
@@ -62,5 +62,5 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
             findings::told(&quality.parameters)
         ))?;
     }
-    Ok(if opened.log.readable == Readable::Whole { Outcome::Done } else { Outcome::Damaged })
+    Ok(if opened.log.readable == Readable::Whole { CommandEnd::Done } else { CommandEnd::Damaged })
 }

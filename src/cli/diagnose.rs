@@ -4,7 +4,7 @@ mod output;
 mod text;
 mod worth;
 
-use super::{Outcome, logs, progress};
+use super::{CommandEnd, logs, progress};
 use crate::base::check::{BadInput, Invalid};
 use crate::base::fsio;
 use crate::insight::diagnose::finding::Verdict;
@@ -14,7 +14,7 @@ use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
 use crate::present::run;
 use indicatif::ProgressBar;
-use output::Output;
+use output::OutputFiles;
 use std::path::PathBuf;
 
 /// Show what the simulation gets wrong, name the cause, and extend the model
@@ -76,8 +76,8 @@ Examples:
   racer diagnose flight.mcap --plan";
 
 /// Reads, checks, diagnoses, prints, writes.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
-    let output = Output::new(args)?;
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
+    let output = OutputFiles::new(args)?;
     let given = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
     check_racing(args)?;
     let bar = progress::bar();
@@ -99,11 +99,11 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         super::print(&worth::retrained(&args.retrain_out, minutes, &base, vehicle)?)?;
     }
     Ok(if args.fail_on_effect && diagnosis.verdict != Verdict::Clean {
-        Outcome::Effect
+        CommandEnd::Effect
     } else if damaged {
-        Outcome::Damaged
+        CommandEnd::Damaged
     } else {
-        Outcome::Done
+        CommandEnd::Done
     })
 }
 

@@ -1,13 +1,13 @@
 //! `racer eval`: what a policy is worth.
 
-use super::{Outcome, sensitivity, table, tell};
+use super::{CommandEnd, sensitivity, table, tell};
 use crate::base::check::BadInput;
 use crate::base::fsio::Reserved;
 use crate::base::lane::Level;
 use crate::base::threads;
 use crate::learn::nn::Network;
 use crate::model::vehicle::Vehicle;
-use crate::present::run::{self, Found};
+use crate::present::run::{self, FoundPolicy};
 use crate::race::env::Race;
 use crate::race::env::reset::Place;
 use crate::race::eval::pace::Pace;
@@ -28,8 +28,8 @@ pub struct Args {
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<String>,
     /// Where the agents start: on the pad, along the track, or one after the other
-    #[arg(long, value_enum, default_value_t = Start::Both)]
-    start: Start,
+    #[arg(long, value_enum, default_value_t = Starts::Both)]
+    start: Starts,
     /// Vehicles: one nominal, all others with every factor drawn [default: as configured, 512]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     agents: Option<u32>,
@@ -61,7 +61,7 @@ point mass with the vehicle's thrust and least drag (`racer track show --help`);
 1.";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Start {
+enum Starts {
     Fixed,
     Random,
     Both,
@@ -76,7 +76,7 @@ fn parse_share(text: &str) -> Result<f64, String> {
 
 /// What is written and, with `--json`, printed.
 #[derive(Serialize)]
-struct File<'a> {
+struct EvalDocument<'a> {
     snapshot: String,
     track: &'a str,
     /// The vehicle that was flown, and the one that it was trained for.
@@ -94,8 +94,8 @@ struct File<'a> {
 }
 
 /// Evaluates, prints and writes.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
-    if args.require.is_some() && args.start == Start::Random {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
+    if args.require.is_some() && args.start == Starts::Random {
         let advice = "leave --start out, or --require";
         return Err(BadInput::new("--require", "--start random", "fixed starts, which it is about", advice).into());
     }
@@ -115,11 +115,11 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
     let fly = |place| benchmark(Level::best(), &race, &about.track, &network, place, &config).0;
     let report = threads::on(args.threads, || Report {
-        fixed: (args.start != Start::Random).then(|| fly(Place::Pad)),
-        random: (args.start != Start::Fixed).then(|| fly(Place::Spline)),
+        fixed: (args.start != Starts::Random).then(|| fly(Place::Pad)),
+        random: (args.start != Starts::Fixed).then(|| fly(Place::Spline)),
     })?;
     let pace = Pace::of(&report, &about.track, vehicle);
-    let content = File {
+    let content = EvalDocument {
         snapshot: found.snapshot.display().to_string(),
         track: &about.track.name,
         vehicle: &vehicle.name,
@@ -147,12 +147,12 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
 /// `--sensitivity`.
 fn sensitive(
     args: &Args,
-    found: &Found,
+    found: &FoundPolicy,
     other: Option<&Vehicle>,
     network: &Network<f32>,
     about: &About,
     config: &EvalConfig,
-) -> anyhow::Result<Outcome> {
+) -> anyhow::Result<CommandEnd> {
     let vehicle = other.unwrap_or(&about.vehicle);
     let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
     let default = || beside(found, &format!("sensitivity-{}{}.json", named(other), config.agents));
@@ -162,17 +162,17 @@ fn sensitive(
     sensitivity::run(&snapshot, &flown, args.threads, args.json, out)
 }
 
-fn judge(require: Option<f64>, report: &Report) -> Outcome {
-    let (completion, Some(share)) = (report.completion(), require) else { return Outcome::Done };
+fn judge(require: Option<f64>, report: &Report) -> CommandEnd {
+    let (completion, Some(share)) = (report.completion(), require) else { return CommandEnd::Done };
     if completion >= share {
-        return Outcome::Done;
+        return CommandEnd::Done;
     }
     tell(&format!("{:.1} % of fixed starts completed a lap; {:.1} % are required", 100.0 * completion, 100.0 * share));
-    Outcome::NotMet
+    CommandEnd::NotMet
 }
 
 /// A name that says what was measured, and that is still free.
-fn default_file(found: &Found, other: Option<&Vehicle>, start: Start, agents: usize) -> PathBuf {
+fn default_file(found: &FoundPolicy, other: Option<&Vehicle>, start: Starts, agents: usize) -> PathBuf {
     let start = format!("{start:?}").to_lowercase();
     beside(found, &format!("evaluation-{}{start}-{agents}.json", named(other)))
 }
@@ -183,7 +183,7 @@ fn named(other: Option<&Vehicle>) -> String {
 }
 
 /// A free file of this name beside the policy, which a snapshot's name leads.
-fn beside(found: &Found, name: &str) -> PathBuf {
+fn beside(found: &FoundPolicy, name: &str) -> PathBuf {
     let name = match &found.run {
         Some(_) => name.into(),
         None => format!("{}-{name}", found.snapshot.file_stem().unwrap_or_default().to_string_lossy()),

@@ -1,6 +1,6 @@
 //! `racer extend`: a vehicle with effects of sizes given by hand, to see what they would do.
 
-use super::{Outcome, columns, tell};
+use super::{CommandEnd, columns, tell};
 use crate::base::check::{BadInput, Check};
 use crate::base::fsio::Reserved;
 use crate::model::effects::{self, MODEL};
@@ -31,10 +31,10 @@ Examples:
   racer eval latest --vehicle what_if.toml";
 
 /// Lists, or checks and writes.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let Some(name) = &args.vehicle else {
         super::print(&list())?;
-        return Ok(Outcome::Done);
+        return Ok(CommandEnd::Done);
     };
     let mut vehicle = Vehicle::load(name)?;
     let Some(out) = &args.out else {
@@ -51,7 +51,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     vehicle.check().map_err(|invalid| BadInput::at("command line", invalid))?;
     let written = out.write(toml::to_string(&vehicle)?.as_bytes())?;
     tell(&format!("extended vehicle in {0}: racer train --vehicle {0}", written.display()));
-    Ok(Outcome::Done)
+    Ok(CommandEnd::Done)
 }
 
 fn parse(text: &str) -> Option<(String, String, f64)> {

@@ -1,6 +1,6 @@
 //! `racer fly`: a flight in the simulator, recorded.
 
-use super::{Outcome, tell};
+use super::{CommandEnd, tell};
 use crate::base::check::BadInput;
 use crate::base::document::nearest;
 use crate::base::fsio::Reserved;
@@ -69,7 +69,7 @@ fn help() -> String {
 const PILOT_THRUST: [f64; 2] = [2.5, 8.0];
 
 /// Flies, records and writes.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     if args.policy.is_none() && !args.pilot {
         let advice = "name a run or a snapshot, or give --pilot";
         return Err(BadInput::new("racer fly", "nothing to fly", "a policy, or the pilot", advice).into());
@@ -83,7 +83,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let written = file.write(&write::mcap(&flown.log)?)?;
     super::print(&summary(&flown))?;
     tell(&format!("written to {}", written.display()));
-    Ok(Outcome::Done)
+    Ok(CommandEnd::Done)
 }
 
 fn fly_policy(args: &Args, policy: &str, sensors: &SensorConfig) -> anyhow::Result<Flown> {

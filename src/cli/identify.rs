@@ -1,6 +1,6 @@
 //! `racer identify`: a vehicle from its flights.
 
-use super::{Outcome, columns, logs, progress, tell};
+use super::{CommandEnd, columns, logs, progress, tell};
 use crate::base::check::{BadInput, Check};
 use crate::base::encode;
 use crate::base::fsio::Reserved;
@@ -76,7 +76,7 @@ fn parse_rates(text: &str) -> Result<[f64; 3], String> {
 }
 
 /// Reads, checks, identifies, writes, prints.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let options = options(args)?;
     let reserve = |path: &Option<PathBuf>| path.as_deref().map(Reserved::new).transpose();
     let (out, json, page) = (Reserved::new(&args.out)?, reserve(&args.json)?, reserve(&args.report)?);
@@ -111,7 +111,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     }
     let written = out.write(encode::toml("the vehicle", &found.vehicle)?.as_bytes())?;
     tell(&format!("vehicle in {0}: racer train --vehicle {0}", written.display()));
-    Ok(if logs::damaged(&checked) { Outcome::Damaged } else { Outcome::Done })
+    Ok(if logs::damaged(&checked) { CommandEnd::Damaged } else { CommandEnd::Done })
 }
 
 fn options(args: &Args) -> Result<Options, BadInput> {

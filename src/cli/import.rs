@@ -1,6 +1,6 @@
 //! `racer import`: a flight log of any kind as a canonical one.
 
-use super::{Outcome, columns, tell};
+use super::{CommandEnd, columns, tell};
 use crate::base::fsio::Reserved;
 use crate::flight::{self, Log, Options, Readable, Stream};
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ A mapping names the columns of each stream; leave out what a log lacks:
 Exit code 3: the file was damaged; what could be read of it was written.";
 
 /// Reads, says what was found, writes.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let file = Reserved::new(&args.out)?;
     let options = Options { mapping: args.mapping.as_deref(), flight: args.flight };
     let opened = flight::open_with(&args.file, options)?;
@@ -71,10 +71,10 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     super::print(&format!("{}, mapping {}\n\n{}", log.name, opened.mapping, found(log)))?;
     tell(&format!("written to {}", written.display()));
     match &log.readable {
-        Readable::Whole => Ok(Outcome::Done),
+        Readable::Whole => Ok(CommandEnd::Done),
         Readable::Prefix { bytes, of, why } => {
             tell(&format!("damaged: {why}; read {bytes} of {of} bytes"));
-            Ok(Outcome::Damaged)
+            Ok(CommandEnd::Damaged)
         }
     }
 }

@@ -9,7 +9,7 @@ const LINE_S: f64 = 10.0;
 const TICKS: f64 = 1000.0;
 
 /// What is shown.
-pub struct Status {
+pub struct TrainingStatus {
     /// Share of the budget used, 0..1.
     pub share: f64,
     pub seconds: f64,
@@ -20,12 +20,12 @@ pub struct Status {
 }
 
 /// The display, on standard error.
-pub struct Progress {
+pub struct TrainingBar {
     bar: Option<ProgressBar>,
     next_line_s: f64,
 }
 
-impl Progress {
+impl TrainingBar {
     pub fn new() -> Self {
         let bar = std::io::stderr().is_terminal().then(|| {
             let style = ProgressStyle::with_template("{bar:24} {percent:>3} %  {wide_msg}");
@@ -34,7 +34,7 @@ impl Progress {
         Self { bar, next_line_s: 0.0 }
     }
 
-    pub fn show(&mut self, status: &Status) {
+    pub fn show(&mut self, status: &TrainingStatus) {
         match &self.bar {
             Some(bar) => {
                 bar.set_position((status.share * TICKS).min(TICKS) as u64);
@@ -50,7 +50,7 @@ impl Progress {
 }
 
 /// Leaves the last state on the screen.
-impl Drop for Progress {
+impl Drop for TrainingBar {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {
             bar.abandon();
@@ -64,8 +64,8 @@ pub fn bar() -> ProgressBar {
     ProgressBar::new(100).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-fn text(status: &Status) -> String {
-    let &Status { share, seconds, steps, episode_return, gates } = status;
+fn text(status: &TrainingStatus) -> String {
+    let &TrainingStatus { share, seconds, steps, episode_return, gates } = status;
     let number = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.1}"));
     let left = seconds * (1.0 - share).max(0.0) / share.max(1e-9);
     format!(
@@ -98,7 +98,8 @@ mod tests {
 
     #[test]
     fn the_line_says_all_there_is() {
-        let status = Status { share: 0.25, seconds: 10.0, steps: 12_000_000, episode_return: Some(3.06), gates: None };
+        let status =
+            TrainingStatus { share: 0.25, seconds: 10.0, steps: 12_000_000, episode_return: Some(3.06), gates: None };
         assert_eq!(text(&status), "12.0 M steps  1.20 M steps/s  reward 3.1  gates/episode -  0:30 left");
     }
 }

@@ -1,6 +1,6 @@
 //! `racer replay`: a flight to look at, in Foxglove and in a browser.
 
-use super::{Outcome, tell};
+use super::{CommandEnd, tell};
 use crate::base::check::BadInput;
 use crate::base::fsio;
 use crate::base::lane::Level;
@@ -63,7 +63,7 @@ const MCAP: &str = "replay.mcap";
 const LAYOUT: &str = "foxglove-layout.json";
 
 /// Flies or reads, and writes.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let path = Path::new(&args.what);
     let log = path.is_file() && path.extension().is_none_or(|extension| extension != "safetensors");
     let (shown, beside, whole) = if log { recorded(args, path)? } else { flown(args)? };
@@ -79,13 +79,13 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     }
     super::print(&summary(&shown))?;
     tell(&format!("{PAGE}, {MCAP} and {LAYOUT} in {}", folder.display()));
-    Ok(if whole { Outcome::Done } else { Outcome::Damaged })
+    Ok(if whole { CommandEnd::Done } else { CommandEnd::Damaged })
 }
 
 /// What is shown, a folder for it, and whether the log could be read to its end.
-type Found = (Replay, PathBuf, bool);
+type Show = (Replay, PathBuf, bool);
 
-fn flown(args: &Args) -> anyhow::Result<Found> {
+fn flown(args: &Args) -> anyhow::Result<Show> {
     if args.mapping.is_some() {
         return Err(refuse("--mapping", "a policy", "a flight log, whose fields it names"));
     }
@@ -101,7 +101,7 @@ fn flown(args: &Args) -> anyhow::Result<Found> {
     Ok((shown, beside, true))
 }
 
-fn recorded(args: &Args, path: &Path) -> anyhow::Result<Found> {
+fn recorded(args: &Args, path: &Path) -> anyhow::Result<Show> {
     for (option, given) in
         [("--vehicle", args.vehicle.is_some()), ("--seconds", args.seconds.is_some()), ("--agents", args.agents > 1)]
     {

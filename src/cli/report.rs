@@ -1,6 +1,6 @@
 //! `racer report`: a folder as a page and figures.
 
-use super::{Outcome, tell};
+use super::{CommandEnd, tell};
 use crate::base::error::Error;
 use crate::base::fsio::{new_folder, write_new};
 use crate::present::report::folder::draw;
@@ -35,7 +35,7 @@ Examples:
 const PAGE: &str = "report.html";
 
 /// Draws what the folder holds and writes it.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let drawn = draw(&args.folder, args.beside.as_deref())?;
     let out = args.out.clone().unwrap_or_else(|| free(&args.folder.join("report")));
     new_folder(&out)?;
@@ -49,5 +49,5 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     write(PAGE, &drawn.page)?;
     tell(&format!("{} figures beside the page", drawn.figures.len()));
     super::print(&out.join(PAGE).display().to_string())?;
-    Ok(Outcome::Done)
+    Ok(CommandEnd::Done)
 }

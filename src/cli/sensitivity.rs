@@ -1,6 +1,6 @@
 //! `racer eval --sensitivity`: which error of the model costs a policy most.
 
-use super::{Outcome, columns, print, progress, tell};
+use super::{CommandEnd, columns, print, progress, tell};
 use crate::base::fsio::Reserved;
 use crate::base::lane::Level;
 use crate::base::threads;
@@ -16,7 +16,7 @@ pub const AGENTS: usize = 128;
 
 /// What is written and, with `--json`, printed.
 #[derive(Serialize)]
-struct Document<'a> {
+struct SensitivityDocument<'a> {
     snapshot: &'a str,
     track: &'a str,
     vehicle: &'a str,
@@ -33,7 +33,13 @@ pub struct Case<'a> {
 }
 
 /// Flies, prints and writes.
-pub fn run(snapshot: &str, flown: &Case, threads: Option<usize>, json: bool, out: Reserved) -> anyhow::Result<Outcome> {
+pub fn run(
+    snapshot: &str,
+    flown: &Case,
+    threads: Option<usize>,
+    json: bool,
+    out: Reserved,
+) -> anyhow::Result<CommandEnd> {
     let Case { race, track, network, config } = *flown;
     let bar = progress::bar();
     let found = threads::on(threads, || {
@@ -41,15 +47,15 @@ pub fn run(snapshot: &str, flown: &Case, threads: Option<usize>, json: bool, out
         sensitivity(Level::best(), race, track, network, config, &mut observer)
     })?;
     bar.finish_and_clear();
-    let document = Document { snapshot, track: &track.name, vehicle: &race.vehicle.name, found: &found };
+    let document = SensitivityDocument { snapshot, track: &track.name, vehicle: &race.vehicle.name, found: &found };
     let content = serde_json::to_string_pretty(&document)?;
     let written = out.write(format!("{content}\n").as_bytes())?;
     print(&if json { content } else { text(&document) })?;
     tell(&format!("written to {}", written.display()));
-    Ok(Outcome::Done)
+    Ok(CommandEnd::Done)
 }
 
-fn text(document: &Document) -> String {
+fn text(document: &SensitivityDocument) -> String {
     let Sensitivity { agents, nominal, parameters } = document.found;
     let (charge, factors): (Vec<_>, Vec<_>) = parameters.iter().partition(|row| row.parameter == "charge");
     format!(

@@ -5,17 +5,17 @@ mod display;
 mod text;
 mod work;
 
-use super::{Outcome, columns, interrupt, tell};
+use super::{CommandEnd, columns, interrupt, tell};
 use crate::base::check::BadInput;
 use crate::base::fsio::Reserved;
 use crate::base::threads::processors;
 use crate::present::run::RUNS;
 use crate::present::study::folder::Folder;
-use crate::present::study::plan::{Budget, Planned, plan};
+use crate::present::study::plan::{Planned, StudyBudget, plan};
 use crate::present::study::shard::Shard;
 use crate::present::study::{Study, tables};
 use std::path::{Path, PathBuf};
-use work::{Ended, Work};
+use work::{Work, WorkEnd};
 
 /// Train a grid of settings times seeds under one budget, and rank the settings
 #[derive(Debug, clap::Args)]
@@ -75,9 +75,9 @@ Examples:
   racer report runs/cpu";
 
 /// Plans, trains what is missing, writes and prints the tables.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let (document, study) = Study::open(&args.file)?;
-    let budget = Budget { minutes: args.minutes, steps: args.steps };
+    let budget = StudyBudget { minutes: args.minutes, steps: args.steps };
     let planned = plan(&args.file, &document, &study, budget)?;
     let (jobs, threads) = share(args, &study)?;
     let out = args.out.clone().unwrap_or_else(|| Path::new(RUNS).join(&planned.plan.study));
@@ -85,12 +85,12 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let shard = args.shard.unwrap_or(Shard::WHOLE);
     if args.list {
         super::print(&list(&planned, &folder, shard))?;
-        return Ok(Outcome::Done);
+        return Ok(CommandEnd::Done);
     }
     let json = args.json.as_deref().map(Reserved::new).transpose()?;
     folder.begin(&planned.plan, document.text())?;
     let ended = if args.table {
-        Ended::default()
+        WorkEnd::default()
     } else {
         interrupt::watch("Ending the runs under way; Ctrl-C again ends at once.")?;
         work::work(&Work { planned: &planned, folder: &folder, shard, jobs, threads })?
@@ -128,7 +128,7 @@ fn list(planned: &Planned, folder: &Folder, shard: Shard) -> String {
 }
 
 /// What is left to say, and how it ended.
-fn conclude(args: &Args, out: &Path, ended: &Ended, finished: usize, planned: usize) -> anyhow::Result<Outcome> {
+fn conclude(args: &Args, out: &Path, ended: &WorkEnd, finished: usize, planned: usize) -> anyhow::Result<CommandEnd> {
     tell(&format!("{finished} of {planned} runs are finished; tables in {}", out.display()));
     for name in &ended.elsewhere {
         tell(&format!("{name} is being made by another process"));
@@ -140,7 +140,7 @@ fn conclude(args: &Args, out: &Path, ended: &Ended, finished: usize, planned: us
             args.file,
             out.display()
         ));
-        return Ok(Outcome::Interrupted);
+        return Ok(CommandEnd::Interrupted);
     }
     for (name, why) in &ended.failed {
         tell(&format!("{name} failed: {why}"));
@@ -148,7 +148,7 @@ fn conclude(args: &Args, out: &Path, ended: &Ended, finished: usize, planned: us
     match ended.failed.len() {
         0 => {
             tell(&format!("figures: racer report {}", out.display()));
-            Ok(Outcome::Done)
+            Ok(CommandEnd::Done)
         }
         failed => anyhow::bail!("{failed} of the runs failed, as said above; the same command tries them again"),
     }

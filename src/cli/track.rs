@@ -1,6 +1,6 @@
 //! `racer track`: what a track is like, and how fast it could be flown.
 
-use super::{Outcome, columns, tell};
+use super::{CommandEnd, columns, tell};
 use crate::base::fsio::Reserved;
 use crate::model::track::{GateKind, Section, Shape, Track};
 use crate::model::vehicle::Vehicle;
@@ -13,11 +13,11 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(subcommand)]
-    command: Command,
+    command: TrackCommand,
 }
 
 #[derive(Debug, clap::Subcommand)]
-enum Command {
+enum TrackCommand {
     Show(Show),
 }
 
@@ -55,10 +55,10 @@ Examples:
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Document<'a> {
+struct TrackDocument<'a> {
     track: &'a str,
     vehicle: &'a str,
-    gates: Vec<Gate<'a>>,
+    gates: Vec<GateLine<'a>>,
     sections: &'a [Section],
     reset_spline: Shape,
     method: &'static str,
@@ -66,7 +66,7 @@ struct Document<'a> {
 }
 
 #[derive(Serialize)]
-struct Gate<'a> {
+struct GateLine<'a> {
     label: String,
     #[serde(flatten)]
     gate: &'a crate::model::track::Gate,
@@ -84,8 +84,8 @@ struct Lap {
     top_speed_m_s: Option<f64>,
 }
 
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
-    let Command::Show(show) = &args.command;
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
+    let TrackCommand::Show(show) = &args.command;
     let (track, vehicle) = (Track::load(&show.track)?, Vehicle::load(&show.vehicle)?);
     let file = show.svg.as_deref().map(Reserved::new).transpose()?;
     let battery = &vehicle.battery;
@@ -98,14 +98,14 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     }
     let document = document(&track, &vehicle, &laps);
     super::print(&if show.json { serde_json::to_string_pretty(&document)? } else { text(&track, &document) })?;
-    Ok(Outcome::Done)
+    Ok(CommandEnd::Done)
 }
 
 fn document<'a>(
     track: &'a Track,
     vehicle: &'a Vehicle,
     laps: &[(&'static str, f64, Option<Reference>)],
-) -> Document<'a> {
+) -> TrackDocument<'a> {
     let spline = track.reset_spline();
     let gates = track.gates.iter().enumerate();
     let lap = |(battery, voltage_v, lap): &(&'static str, f64, Option<Reference>)| Lap {
@@ -115,11 +115,11 @@ fn document<'a>(
         length_m: lap.as_ref().map(|lap| lap.length),
         top_speed_m_s: lap.as_ref().map(|lap| lap.top_speed),
     };
-    Document {
+    TrackDocument {
         track: &track.name,
         vehicle: &vehicle.name,
         gates: gates
-            .map(|(i, gate)| Gate { label: track.gate_label(i), gate, at_m: spline.length_at(i + 1) })
+            .map(|(i, gate)| GateLine { label: track.gate_label(i), gate, at_m: spline.length_at(i + 1) })
             .collect(),
         sections: &track.sections,
         reset_spline: track.shape(),
@@ -128,8 +128,8 @@ fn document<'a>(
     }
 }
 
-fn text(track: &Track, document: &Document) -> String {
-    let gates = document.gates.iter().map(|Gate { label, gate, at_m }| {
+fn text(track: &Track, document: &TrackDocument) -> String {
+    let gates = document.gates.iter().map(|GateLine { label, gate, at_m }| {
         let [x, y, z] = gate.position_m.map(|x| format!("{x:.2}"));
         let heading = format!("{:.0}", gate.heading_deg);
         let kind = match gate.kind {

@@ -1,8 +1,8 @@
 //! `racer train`: a policy from a track.
 
-use super::training::Shown;
+use super::training::ShownTraining;
 use super::values::threads;
-use super::{Outcome, interrupt, tell};
+use super::{CommandEnd, interrupt, tell};
 use crate::base::check::BadInput;
 use crate::present::run::Run;
 use crate::present::train::{Ended, make};
@@ -72,19 +72,19 @@ impl Args {
 }
 
 /// Trains, saves, evaluates.
-pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let setup = Setup::load(&args.config, &args.settings()?)?;
     let run = Run::create(args.out.as_deref(), &setup.track.name)?;
-    let mut shown = Shown::new()?;
+    let mut shown = ShownTraining::new()?;
     if args.attached {
         interrupt::end_with_standard_input();
     }
     let command = std::env::args_os().map(|word| quote(&word.to_string_lossy())).collect::<Vec<_>>().join(" ");
     match make(&run, &setup, threads(args.threads), &command, &mut shown)? {
-        Ended::Finished(_) => Ok(Outcome::Done),
+        Ended::Finished(_) => Ok(CommandEnd::Done),
         Ended::Stopped { steps } => {
             stopped(&run, steps);
-            Ok(Outcome::Interrupted)
+            Ok(CommandEnd::Interrupted)
         }
     }
 }

@@ -1,26 +1,26 @@
 //! A training as the terminal shows it, for every command that trains.
 
-use super::progress::{Progress, Status, clock};
+use super::progress::{TrainingBar, TrainingStatus, clock};
 use super::{interrupt, table, tell};
 use crate::base::error::{Error, Result};
 use crate::learn::ppo::train::Iteration;
 use crate::present::report::figures::{LAP, TRAINING};
-use crate::present::run::metrics::Row;
+use crate::present::run::metrics::LogRow;
 use crate::present::run::provenance::Provenance;
 use crate::present::run::{POLICY, Run};
-use crate::present::train::{Finished, Watch};
+use crate::present::train::{Finished, TrainingWatch};
 use crate::race::config::Setup;
 use crate::race::env::tally::Tally;
 
 /// Shows the progress, and ends the training at Ctrl-C.
 #[derive(Default)]
-pub struct Shown {
-    progress: Option<Progress>,
+pub struct ShownTraining {
+    progress: Option<TrainingBar>,
     /// The last return and number of gates there were.
     last: [Option<f64>; 2],
 }
 
-impl Shown {
+impl ShownTraining {
     /// From now on Ctrl-C ends a training after the update under way.
     pub fn new() -> Result<Self> {
         interrupt::watch("Finishing this update and saving; Ctrl-C again ends at once, without saving.")
@@ -29,20 +29,20 @@ impl Shown {
     }
 }
 
-impl Watch for Shown {
+impl TrainingWatch for ShownTraining {
     fn begin(&mut self, run: &Run, setup: &Setup, made: &Provenance) {
         let (track, folder) = (&setup.track.name, run.folder.display());
         tell(&format!("{track} on {} threads, {}; run folder {folder}", made.threads, made.simd));
-        *self = Self { progress: Some(Progress::new()), last: [None; 2] };
+        *self = Self { progress: Some(TrainingBar::new()), last: [None; 2] };
     }
 
-    fn iteration(&mut self, iteration: &Iteration<Tally>, row: &Row) {
+    fn iteration(&mut self, iteration: &Iteration<Tally>, row: &LogRow) {
         let now = [row.get("episode/return_median"), row.get("episode/gates")];
         self.last = [now[0].or(self.last[0]), now[1].or(self.last[1])];
         let [episode_return, gates] = self.last;
         let &Iteration { share, seconds, steps, .. } = iteration;
         if let Some(progress) = &mut self.progress {
-            progress.show(&Status { share, seconds, steps, episode_return, gates });
+            progress.show(&TrainingStatus { share, seconds, steps, episode_return, gates });
         }
     }
 

@@ -29,7 +29,7 @@ pub struct Pair {
 
 /// The measured figures.
 #[derive(Clone, Debug, Serialize)]
-pub struct Figures {
+pub struct BenchFigures {
     /// The model alone ([`crate::model::dynamics::step`]), commands held for a rollout's length, 2048 vehicles a
     /// thread.
     pub physics_steps_per_s: Pair,
@@ -72,7 +72,7 @@ pub fn measure(
     level: Level,
     threads: usize,
     time: Duration,
-) -> Figures {
+) -> BenchFigures {
     let race = Race::new(&config.env, track, vehicle, config.seed);
     let part = time / 10;
     let on = |threads: usize| -> [f64; 5] {
@@ -92,7 +92,7 @@ pub fn measure(
     let (one, all) = (on(1), on(threads));
     let pair = |i: usize| Pair { one_thread: one[i], all_threads: all[i] };
     let flops = training_flops_per_step(race.observations(), config.ppo.epochs);
-    Figures {
+    BenchFigures {
         physics_steps_per_s: pair(0),
         environment_steps_per_s: pair(1),
         rollout_steps_per_s: pair(2),
@@ -132,18 +132,18 @@ fn environment(race: &Race, level: Level, threads: usize, steps: usize, time: Du
     let blocks = 2048 / LANES * threads;
     let mut saved: Vec<_> = (0..blocks).map(|b| race.start((b * LANES) as u32)).collect();
     let seconds = best(time, || {
-        saved.par_chunks_mut(TILE_BLOCKS).for_each(|tile| dispatch(level, Fly { race, tile, steps }));
+        saved.par_chunks_mut(TILE_BLOCKS).for_each(|tile| dispatch(level, FlyBench { race, tile, steps }));
     });
     (blocks * LANES * steps) as f64 / seconds
 }
 
-struct Fly<'a> {
+struct FlyBench<'a> {
     race: &'a Race,
     tile: &'a mut [<Race as Environment>::Saved],
     steps: usize,
 }
 
-impl Kernel for Fly<'_> {
+impl Kernel for FlyBench<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lane32>(self) {

@@ -25,12 +25,12 @@ pub struct Replay {
     pub start_ns: u64,
     pub track: Option<Track>,
     /// The first is looked at; the others are beside it to compare.
-    pub vehicles: Vec<Vehicle>,
+    pub vehicles: Vec<ReplayVehicle>,
 }
 
 /// One vehicle's flight.
 #[derive(Clone, Debug)]
-pub struct Vehicle {
+pub struct ReplayVehicle {
     pub name: String,
     /// In the order of time.
     pub frames: Vec<Frame>,

@@ -15,6 +15,7 @@ mod page;
 mod plot;
 pub mod replay;
 pub mod run;
+mod signals;
 pub mod spread;
 pub mod study;
 pub mod training;

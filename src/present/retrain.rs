@@ -1,7 +1,7 @@
 //! What an extended vehicle is worth for racing: policies trained or flown with it and without.
 
 use super::run::Run;
-use super::train::{Ended, Watch, make};
+use super::train::{Ended, TrainingWatch, make};
 use crate::base::encode;
 use crate::base::error::{Error, Result};
 use crate::base::fsio::write_new;
@@ -33,7 +33,7 @@ pub fn retrain(
     minutes: f64,
     vehicles: [Named; 2],
     threads: usize,
-    watch: &mut dyn Watch,
+    watch: &mut dyn TrainingWatch,
 ) -> Result<Vec<(&'static str, Benchmark)>> {
     let (_, flown) = vehicles[1];
     let mut all = Vec::new();
@@ -71,7 +71,7 @@ mod tests {
 
     struct Impatient;
 
-    impl Watch for Impatient {
+    impl TrainingWatch for Impatient {
         fn stop(&self) -> bool {
             true
         }

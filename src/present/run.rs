@@ -19,7 +19,7 @@ pub mod provenance;
 pub mod resolved;
 pub mod tensorboard;
 
-pub use find::{Found, find};
+pub use find::{FoundPolicy, find};
 
 use crate::base::check::BadInput;
 use crate::base::error::{Error, Result};

@@ -2,7 +2,7 @@
 
 use super::report::figures::{self, TRAINING};
 use super::run::evaluated::{self, EVALUATED, Evaluated};
-use super::run::metrics::{METRICS, Row, to_csv};
+use super::run::metrics::{LogRow, METRICS, to_csv};
 use super::run::provenance::Provenance;
 use super::run::{POLICY, Run, SNAPSHOTS, TENSORBOARD, resolved, tensorboard};
 use crate::base::encode;
@@ -15,15 +15,15 @@ use crate::race::env::tally::Tally;
 use crate::race::eval::both_starts;
 use crate::race::eval::fly::Moment;
 use crate::race::snapshot::Snapshot;
-use crate::race::train::{Trained, train};
+use crate::race::train::{TrainedPolicies, train};
 use std::time::SystemTime;
 
 /// Who watches a training, and may end it.
-pub trait Watch: Send {
+pub trait TrainingWatch: Send {
     /// It begins in the folder of `run`.
     fn begin(&mut self, _run: &Run, _setup: &Setup, _made: &Provenance) {}
     /// An iteration is done; `row` is what the log says of it.
-    fn iteration(&mut self, _iteration: &Iteration<Tally>, _row: &Row) {}
+    fn iteration(&mut self, _iteration: &Iteration<Tally>, _row: &LogRow) {}
     /// So many snapshots are about to be evaluated.
     fn evaluating(&mut self, _snapshots: usize) {}
     /// It is done, and everything is written.
@@ -61,7 +61,7 @@ pub enum Ended {
 }
 
 /// Trains as `setup` says and fills the folder of `run`, on so many threads; `command` is how the user asked for it.
-pub fn make(run: &Run, setup: &Setup, threads: usize, command: &str, watch: &mut dyn Watch) -> Result<Ended> {
+pub fn make(run: &Run, setup: &Setup, threads: usize, command: &str, watch: &mut dyn TrainingWatch) -> Result<Ended> {
     let (level, provenance) = (Level::best(), Provenance::now(Level::best(), threads));
     run.write("command.txt", format!("{command}\n"))?;
     for (name, content) in resolved::files(setup)? {
@@ -70,10 +70,10 @@ pub fn make(run: &Run, setup: &Setup, threads: usize, command: &str, watch: &mut
     run.write("provenance.json", encode::json("the provenance", &provenance)?)?;
     watch.begin(run, setup, &provenance);
     threads::on(Some(threads), || {
-        let mut log = Log { rows: Vec::new(), last_s: 0.0, watch };
+        let mut log = RowLog { rows: Vec::new(), last_s: 0.0, watch };
         let started = SystemTime::now();
         let trained = train(level, setup, &mut log);
-        let Log { rows, watch, .. } = log;
+        let RowLog { rows, watch, .. } = log;
         save(run, &trained, started, &rows)?;
         if trained.stopped {
             return Ok(Ended::Stopped { steps: trained.steps });
@@ -83,15 +83,15 @@ pub fn make(run: &Run, setup: &Setup, threads: usize, command: &str, watch: &mut
 }
 
 /// Gathers the rows of the log. Writing waits until the training is over: it is not part of the budget.
-struct Log<'a> {
-    rows: Vec<Row>,
+struct RowLog<'a> {
+    rows: Vec<LogRow>,
     last_s: f64,
-    watch: &'a mut dyn Watch,
+    watch: &'a mut dyn TrainingWatch,
 }
 
-impl Observer<Tally> for Log<'_> {
+impl Observer<Tally> for RowLog<'_> {
     fn iteration(&mut self, iteration: &Iteration<Tally>) -> Flow {
-        let row = Row::new(iteration, iteration.seconds - self.last_s);
+        let row = LogRow::new(iteration, iteration.seconds - self.last_s);
         self.last_s = iteration.seconds;
         self.watch.iteration(iteration, &row);
         self.rows.push(row);
@@ -105,7 +105,7 @@ fn file_of(policy: &Snapshot) -> String {
 }
 
 /// Writes policies and logs.
-fn save(run: &Run, trained: &Trained, started: SystemTime, rows: &[Row]) -> Result<()> {
+fn save(run: &Run, trained: &TrainedPolicies, started: SystemTime, rows: &[LogRow]) -> Result<()> {
     for policy in &trained.policies {
         run.write(&file_of(policy), policy.to_bytes()?)?;
     }
@@ -141,9 +141,9 @@ fn choose(
     run: &Run,
     setup: &Setup,
     level: Level,
-    trained: &Trained,
-    rows: &[Row],
-    watch: &mut dyn Watch,
+    trained: &TrainedPolicies,
+    rows: &[LogRow],
+    watch: &mut dyn TrainingWatch,
 ) -> Result<Ended> {
     watch.evaluating(trained.policies.len());
     let Some(flown) = evaluate(level, setup, &trained.policies, &mut || watch.stop()) else {

@@ -9,7 +9,7 @@ use crate::race::snapshot::{About, Snapshot};
 
 /// What a training leaves.
 #[derive(Clone, Debug)]
-pub struct Trained {
+pub struct TrainedPolicies {
     /// Evenly spread over the budget; the last is the final policy.
     pub policies: Vec<Snapshot>,
     /// Environment steps and time, s.
@@ -21,7 +21,7 @@ pub struct Trained {
 
 /// Trains on the current rayon pool. The same set-up with a budget of steps gives the same policies on any number of
 /// threads.
-pub fn train(level: Level, setup: &Setup, observer: &mut dyn Observer<Tally>) -> Trained {
+pub fn train(level: Level, setup: &Setup, observer: &mut dyn Observer<Tally>) -> TrainedPolicies {
     let Setup { config, track, vehicle } = setup;
     let race = Race::new(&config.env, track, vehicle, config.seed);
     let trained = learn(level, &race, &config.ppo, &config.budget, config.seed, observer);
@@ -36,5 +36,5 @@ pub fn train(level: Level, setup: &Setup, observer: &mut dyn Observer<Tally>) ->
     };
     let policies = trained.snapshots.into_iter();
     let policies = policies.map(|s| Snapshot { network: s.network, about: about(s.steps, s.seconds) }).collect();
-    Trained { policies, steps: trained.steps, seconds: trained.seconds, stopped: trained.stopped }
+    TrainedPolicies { policies, steps: trained.steps, seconds: trained.seconds, stopped: trained.stopped }
 }

@@ -1,7 +1,7 @@
 //! Training as a whole: the same bits on any number of threads, and that it learns.
 
 use racer::base::lane::Level;
-use racer::learn::ppo::train::{Flow, Iteration, Observer, Trained, train};
+use racer::learn::ppo::train::{Flow, Iteration, Observer, TrainedNetworks, train};
 use racer::race::config::{Config, Setting};
 use racer::race::env::Race;
 use racer::race::env::tally::Tally;
@@ -20,7 +20,7 @@ impl Observer<Tally> for Log {
     }
 }
 
-fn run(threads: usize, level: Level, settings: &[&str], log: &mut Log) -> Trained {
+fn run(threads: usize, level: Level, settings: &[&str], log: &mut Log) -> TrainedNetworks {
     let settings: Vec<_> = settings.iter().map(|s| Setting::parse(s).unwrap()).collect();
     let config = Config::load("a2rl", &settings).unwrap();
     let (track, vehicle) = (config.load_track().unwrap(), config.load_vehicle().unwrap());
@@ -29,7 +29,7 @@ fn run(threads: usize, level: Level, settings: &[&str], log: &mut Log) -> Traine
     pool.install(|| train(level, &race, &config.ppo, &config.budget, config.seed, log))
 }
 
-fn bits(trained: &Trained) -> Vec<u32> {
+fn bits(trained: &TrainedNetworks) -> Vec<u32> {
     trained.snapshots.last().unwrap().network.parameters.iter().map(|p| p.to_bits()).collect()
 }
 

@@ -5,7 +5,7 @@ use crate::support::racer;
 use racer::base::check::BadInput;
 use racer::base::document::Document;
 use racer::present::study::Study;
-use racer::present::study::plan::{Budget, Planned, plan};
+use racer::present::study::plan::{Planned, StudyBudget, plan};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ ppo.rollout = [16, 32]
 
 fn planned(text: &str) -> Result<Planned, BadInput> {
     let document = Document::parse("study.toml", text)?;
-    plan("study.toml", &document, &Study::of(&document)?, Budget::default())
+    plan("study.toml", &document, &Study::of(&document)?, StudyBudget::default())
 }
 
 fn with_study(text: &str) -> tempfile::TempDir {
@@ -99,7 +99,7 @@ fn shipped_studies_hold_what_they_say() {
         ("regularisation_factorial", 8, 24),
     ] {
         let (document, study) = Study::open(name).unwrap();
-        let plan = plan(name, &document, &study, Budget::default()).unwrap().plan;
+        let plan = plan(name, &document, &study, StudyBudget::default()).unwrap().plan;
         assert_eq!((plan.settings.len(), plan.runs.len()), (settings, runs), "{name}");
     }
 }

@@ -7,18 +7,18 @@ use crate::base::fsio::{self, Reserved};
 use crate::cli::tell;
 use crate::insight::diagnose::Diagnosed;
 use crate::present::report;
-use crate::present::report::diagnosis::Figures;
+use crate::present::report::diagnosis::DiagnosisFigures;
 use std::path::Path;
 
 /// Those that were asked for, known to be writable before the work begins.
-pub struct Output<'a> {
+pub struct OutputFiles<'a> {
     json: Option<Reserved>,
     vehicle: Option<Reserved>,
     page: Option<Reserved>,
     figures: Option<&'a Path>,
 }
 
-impl<'a> Output<'a> {
+impl<'a> OutputFiles<'a> {
     pub fn new(args: &'a Args) -> Result<Self, BadInput> {
         let reserve = |path: &Option<_>| path.as_deref().map(Reserved::new).transpose();
         let (json, vehicle, page) = (reserve(&args.json)?, reserve(&args.extend)?, reserve(&args.report)?);
@@ -46,7 +46,7 @@ fn show(diagnosed: &Diagnosed, page: Option<Reserved>, folder: Option<&Path>) ->
     if page.is_none() && folder.is_none() {
         return Ok(());
     }
-    let figures = Figures::new(diagnosed)?;
+    let figures = DiagnosisFigures::new(diagnosed)?;
     if let Some(folder) = folder {
         for figure in figures.all() {
             fsio::write_new(&folder.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;

@@ -3,7 +3,7 @@
 use crate::base::error::Result;
 use crate::base::threads::processors;
 use crate::cli::columns;
-use crate::cli::training::Shown;
+use crate::cli::training::ShownTraining;
 use crate::model::vehicle::Vehicle;
 use crate::present::retrain::{fly, retrain};
 use crate::present::run;
@@ -12,7 +12,7 @@ use crate::race::snapshot::Snapshot;
 use std::path::Path;
 
 /// A line of the table: how a policy was trained, what it flew in, and how that went.
-type Line = (String, &'static str, Benchmark);
+type FlownLine = (String, &'static str, Benchmark);
 
 /// The table of `policy` flown in the base and in the extended vehicle.
 pub fn present(policy: &str, base: &Vehicle, extended: &Vehicle) -> Result<String> {
@@ -27,12 +27,12 @@ pub fn present(policy: &str, base: &Vehicle, extended: &Vehicle) -> Result<Strin
 /// The table of two policies, one trained in each vehicle for `minutes` in the folder `to`, flown in the extended one.
 pub fn retrained(to: &Path, minutes: f64, base: &Vehicle, extended: &Vehicle) -> Result<String> {
     let vehicles = [("base", base), ("extended", extended)];
-    let flown = retrain(to, minutes, vehicles, processors(), &mut Shown::new()?)?;
+    let flown = retrain(to, minutes, vehicles, processors(), &mut ShownTraining::new()?)?;
     let line = |(name, result)| (format!("trained in the {name} vehicle"), "extended", result);
     Ok(table(&flown.into_iter().map(line).collect::<Vec<_>>()))
 }
 
-fn table(flown: &[Line]) -> String {
+fn table(flown: &[FlownLine]) -> String {
     let rows = flown.iter().map(|(policy, vehicle, result)| {
         let lap = result.lap_time_s.map_or("-".into(), |t| format!("{:.2}", t.median));
         let laps = format!("{:.1} of {}", 100.0 * result.lap_completion, result.agents);

@@ -14,7 +14,7 @@ const LOOK: Duration = Duration::from_millis(50);
 const TAIL: usize = 15;
 
 /// What a training comes from and goes to.
-pub struct Training<'a> {
+pub struct ChildTraining<'a> {
     pub config: &'a str,
     pub settings: &'a [Setting],
     pub threads: usize,
@@ -22,7 +22,7 @@ pub struct Training<'a> {
 }
 
 /// How it ended.
-pub enum End {
+pub enum ChildEnd {
     Trained,
     /// Because the study was asked to end.
     Stopped,
@@ -31,7 +31,7 @@ pub enum End {
 }
 
 /// Trains with `racer train`, telling `heard` each of its lines.
-pub fn train(training: &Training, heard: &(dyn Fn(&str) + Sync)) -> anyhow::Result<End> {
+pub fn train(training: &ChildTraining, heard: &(dyn Fn(&str) + Sync)) -> anyhow::Result<ChildEnd> {
     let mut command = Command::new(std::env::current_exe()?);
     command.args(["train", "--attached", "--config", training.config]);
     for setting in training.settings {
@@ -53,12 +53,12 @@ pub fn train(training: &Training, heard: &(dyn Fn(&str) + Sync)) -> anyhow::Resu
         wait(&mut child)
     })
     .map(|status| match status {
-        None => End::Stopped,
-        Some(status) if status.success() => End::Trained,
+        None => ChildEnd::Stopped,
+        Some(status) if status.success() => ChildEnd::Trained,
         Some(status) => {
             let lines = lines.into_inner().unwrap_or_default();
             let tail = lines[lines.len().saturating_sub(TAIL)..].join("\n  ");
-            End::Failed(format!("{status}\n  {tail}"))
+            ChildEnd::Failed(format!("{status}\n  {tail}"))
         }
     })
 }

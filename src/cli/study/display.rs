@@ -29,23 +29,23 @@ impl Display {
     }
 
     /// The line of a run that begins.
-    pub fn begin(&self, name: &str) -> Line {
+    pub fn begin(&self, name: &str) -> BarLine {
         match &self.bars {
             Some((all, _)) => {
                 let style = ProgressStyle::with_template("  {prefix}  {wide_msg}");
                 let bar = all.add(ProgressBar::new_spinner().with_prefix(name.to_string()));
                 bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
-                Line(Some(bar))
+                BarLine(Some(bar))
             }
             None => {
                 tell(&format!("{name} begins"));
-                Line(None)
+                BarLine(None)
             }
         }
     }
 
     /// A run has ended, the `done`th; `remark` says how.
-    pub fn end(&self, line: Line, done: usize, remark: &str) {
+    pub fn end(&self, line: BarLine, done: usize, remark: &str) {
         let elapsed = self.started.elapsed();
         let left = elapsed.as_secs_f64() / done.max(1) as f64 * (self.total - done) as f64;
         let left = format!("{} left", clock(left));
@@ -71,9 +71,9 @@ impl Display {
 }
 
 /// The line of a run under way.
-pub struct Line(Option<ProgressBar>);
+pub struct BarLine(Option<ProgressBar>);
 
-impl Line {
+impl BarLine {
     /// Shows what the run says.
     pub fn show(&self, text: &str) {
         if let Some(bar) = &self.0 {

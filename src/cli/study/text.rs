@@ -1,8 +1,8 @@
 //! A study's results as text: the ranking with what matters beside it, then each axis.
 
 use crate::cli::columns;
-use crate::present::study::results::{Group, Results};
-use crate::present::study::summary::Summary;
+use crate::present::study::results::{Results, RunGroup};
+use crate::present::study::summary::SeedSummary;
 
 /// All tables.
 pub fn results(results: &Results) -> String {
@@ -25,10 +25,10 @@ pub fn results(results: &Results) -> String {
 const METRICS: [&str; 6] = ["seeds", "laps, %", "min - max", "ready", "median lap, s", "|da|^2"];
 
 /// The cells of [`METRICS`] and the share of saturated commands.
-fn cells(group: &Group) -> Vec<String> {
+fn cells(group: &RunGroup) -> Vec<String> {
     let of = |name: &str| group.metrics.get(name);
     let mean = |name: &str, digits: usize| of(name).map_or("-".into(), |s| format!("{:.digits$}", s.mean));
-    let laps = |show: &dyn Fn(&Summary) -> String| of("fixed_completion").map_or("-".into(), show);
+    let laps = |show: &dyn Fn(&SeedSummary) -> String| of("fixed_completion").map_or("-".into(), show);
     let seeds = if group.finished == group.planned {
         group.finished.to_string()
     } else {
@@ -62,8 +62,8 @@ fn ranked(results: &Results) -> String {
     columns::table(&header, rows.collect(), 2..header.len())
 }
 
-fn groups(axis: &str, levels: &[Group]) -> String {
+fn groups(axis: &str, levels: &[RunGroup]) -> String {
     let header = [&[axis, "runs"], &METRICS[1..], &["|a|>.95"]].concat();
-    let row = |group: &Group| [vec![group.name.clone()], cells(group)].concat();
+    let row = |group: &RunGroup| [vec![group.name.clone()], cells(group)].concat();
     columns::table(&header, levels.iter().map(row).collect(), 1..header.len())
 }

@@ -1,12 +1,12 @@
 //! The runs that a study still lacks, several at a time.
 
-use super::child::{self, End, Training};
+use super::child::{self, ChildEnd, ChildTraining};
 use super::display::Display;
 use crate::base::fsio::{self, Claim};
 use crate::cli::interrupt;
 use crate::present::study::folder::{Folder, same};
 use crate::present::study::plan::Planned;
-use crate::present::study::result::{self, About, RESULT, RunResult};
+use crate::present::study::result::{self, RESULT, RunLabel, RunResult};
 use crate::present::study::shard::Shard;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -23,7 +23,7 @@ pub struct Work<'a> {
 
 /// How the work ended.
 #[derive(Default)]
-pub struct Ended {
+pub struct WorkEnd {
     pub interrupted: bool,
     /// Runs that another process was making.
     pub elsewhere: Vec<String>,
@@ -42,15 +42,15 @@ enum Made {
 }
 
 /// Makes all runs of the part that are not finished.
-pub fn work(work: &Work) -> anyhow::Result<Ended> {
+pub fn work(work: &Work) -> anyhow::Result<WorkEnd> {
     let runs = work.planned.plan.runs.iter().enumerate();
     let missing = runs.filter(|(i, run)| work.shard.has(*i) && !work.folder.finished(&run.name)).map(|(i, _)| i);
     let missing: Vec<usize> = missing.collect();
     if missing.is_empty() {
-        return Ok(Ended::default());
+        return Ok(WorkEnd::default());
     }
     let display = Display::new(missing.len());
-    let (next, done, ended) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::new(Ended::default()));
+    let (next, done, ended) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::new(WorkEnd::default()));
     std::thread::scope(|scope| {
         for _ in 0..work.jobs.min(missing.len()) {
             scope.spawn(|| {
@@ -106,16 +106,16 @@ fn make(work: &Work, run: usize, heard: &(dyn Fn(&str) + Sync)) -> anyhow::Resul
     if folder.finished(&about.name) {
         return Ok(Made::Before);
     }
-    let training = Training { config: &planned.config, settings, threads: *threads, out: claim.work() };
+    let training = ChildTraining { config: &planned.config, settings, threads: *threads, out: claim.work() };
     match child::train(&training, heard)? {
-        End::Trained => {}
-        End::Stopped => return Ok(Made::Stopped),
-        End::Failed(why) => return Ok(Made::Failed(why)),
+        ChildEnd::Trained => {}
+        ChildEnd::Stopped => return Ok(Made::Stopped),
+        ChildEnd::Failed(why) => return Ok(Made::Failed(why)),
     }
     // A file that the configuration names may have changed since it was planned.
     same(claim.work(), setup)?;
     let setting = &planned.plan.settings[about.setting].name;
-    let about = About { run: &about.name, setting, seed: about.seed, threads: *threads };
+    let about = RunLabel { run: &about.name, setting, seed: about.seed, threads: *threads };
     let result = result::of(claim.work(), &about, planned.plan.section_share)?;
     let text = serde_json::to_string_pretty(&result)? + "\n";
     fsio::replace(&claim.work().join(RESULT), text.as_bytes())?;

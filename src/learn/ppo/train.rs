@@ -49,16 +49,16 @@ pub trait Observer<T> {
 
 /// A policy on the way.
 #[derive(Clone)]
-pub struct Snapshot {
+pub struct NetworkSnapshot {
     pub network: Network<f32>,
     pub steps: u64,
     pub seconds: f64,
 }
 
 /// What a training leaves.
-pub struct Trained {
+pub struct TrainedNetworks {
     /// Evenly spread over the budget; the last is the final policy.
-    pub snapshots: Vec<Snapshot>,
+    pub snapshots: Vec<NetworkSnapshot>,
     pub steps: u64,
     pub seconds: f64,
     /// Whether the observer ended it before the budget did.
@@ -196,7 +196,7 @@ pub fn train<E: Environment>(
     budget: &BudgetConfig,
     seed: u64,
     observer: &mut dyn Observer<E::Tally>,
-) -> Trained {
+) -> TrainedNetworks {
     let mut training = Training::new(level, environment, config, seed);
     let started = Instant::now();
     let (mut snapshots, mut steps) = (Vec::new(), 0u64);
@@ -222,10 +222,10 @@ pub fn train<E: Environment>(
         });
         let done = share >= 1.0 || flow == Flow::Stop;
         if done || share * budget.snapshots as f64 >= (snapshots.len() + 1) as f64 {
-            snapshots.push(Snapshot { network: training.network.clone(), steps, seconds });
+            snapshots.push(NetworkSnapshot { network: training.network.clone(), steps, seconds });
         }
         if done {
-            return Trained { snapshots, steps, seconds, stopped: share < 1.0 };
+            return TrainedNetworks { snapshots, steps, seconds, stopped: share < 1.0 };
         }
     }
 }

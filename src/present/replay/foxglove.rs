@@ -2,7 +2,7 @@
 //!
 //! Names of messages and fields: Foxglove's published schemas (docs.foxglove.dev/docs/visualization/message-schemas).
 
-use super::{Frame, Vehicle};
+use super::{Frame, ReplayVehicle};
 use crate::model::track::{Gate, GateKind, Track};
 use crate::present::colour::viridis;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
@@ -153,12 +153,12 @@ fn line(kind: u8, thickness: f64, points: Vec<Value>, solid: [f64; 4], colours: 
 }
 
 /// Frames of a path, at most [`PLACES`] and one.
-fn kept(vehicle: &Vehicle) -> impl Iterator<Item = &Frame> {
+fn kept(vehicle: &ReplayVehicle) -> impl Iterator<Item = &Frame> {
     vehicle.frames.iter().step_by(vehicle.frames.len().div_ceil(PLACES).max(1))
 }
 
 /// The whole path of a vehicle; that of the first coloured by speed, of at most `top` m/s.
-pub fn path(ns: u64, i: usize, vehicle: &Vehicle, top: f64) -> Value {
+pub fn path(ns: u64, i: usize, vehicle: &ReplayVehicle, top: f64) -> Value {
     let points = kept(vehicle).map(|frame| vector(frame.position)).collect();
     let shade = |frame: &Frame| {
         let plotters::style::RGBColor(r, g, b) = viridis(frame.speed() / top);
@@ -196,7 +196,7 @@ pub fn model(ns: u64, i: usize) -> Value {
 }
 
 /// `foxglove.PosesInFrame` of a flight.
-pub fn poses(ns: u64, vehicle: &Vehicle) -> Value {
+pub fn poses(ns: u64, vehicle: &ReplayVehicle) -> Value {
     let poses: Vec<_> = kept(vehicle).map(|frame| pose(frame.position, frame.attitude)).collect();
     json!({ "timestamp": stamp(ns), "frame_id": WORLD, "poses": poses })
 }

@@ -1,6 +1,6 @@
 //! A recorded flight, to be shown.
 
-use super::{Frame, Replay, Vehicle, laps};
+use super::{Frame, Replay, ReplayVehicle, laps};
 use crate::base::check::BadInput;
 use crate::flight::Log;
 use crate::flight::series::{held, interpolated};
@@ -61,7 +61,7 @@ pub fn recorded(log: &Log, track: Option<&Track>) -> Result<Replay, BadInput> {
         });
     }
     let passes = track.map_or(Vec::new(), |track| pass(&mut all, track));
-    let vehicle = Vehicle { name: "recorded".into(), frames: all, laps: laps(&passes), passes, failure: None };
+    let vehicle = ReplayVehicle { name: "recorded".into(), frames: all, laps: laps(&passes), passes, failure: None };
     Ok(Replay { title: log.name.clone(), start_ns: log.start_ns, track: track.cloned(), vehicles: vec![vehicle] })
 }
 

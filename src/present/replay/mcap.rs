@@ -28,12 +28,12 @@ pub fn mcap(replay: &Replay) -> Result<Vec<u8>> {
         for frame in &vehicle.frames {
             let ns = at(replay, frame.time_s)?;
             let transform = json!({ "transforms": [foxglove::transform(ns, i, frame)] });
-            messages.push(Message::new(ns, "/tf", "foxglove.FrameTransforms", transform));
+            messages.push(TimedMessage::new(ns, "/tf", "foxglove.FrameTransforms", transform));
             if i == 0 {
-                messages.push(Message::new(ns, "/commands", "racer.Commands", commands(ns, frame)));
-                messages.push(Message::new(ns, "/state", "racer.State", state(ns, frame)));
+                messages.push(TimedMessage::new(ns, "/commands", "racer.Commands", commands(ns, frame)));
+                messages.push(TimedMessage::new(ns, "/state", "racer.State", state(ns, frame)));
                 if let Some(seen) = &frame.observation {
-                    messages.push(Message::new(ns, "/observation", "racer.Observation", observation(ns, seen)));
+                    messages.push(TimedMessage::new(ns, "/observation", "racer.Observation", observation(ns, seen)));
                 }
             }
         }
@@ -44,16 +44,16 @@ pub fn mcap(replay: &Replay) -> Result<Vec<u8>> {
     write(&messages).map_err(Error::encode("the replay"))
 }
 
-struct Message {
+struct TimedMessage {
     ns: u64,
     topic: &'static str,
     schema: &'static str,
     content: Value,
 }
 
-impl Message {
+impl TimedMessage {
     fn new(ns: u64, topic: &'static str, schema: &'static str, content: Value) -> Self {
-        Message { ns, topic, schema, content }
+        TimedMessage { ns, topic, schema, content }
     }
 }
 
@@ -64,21 +64,21 @@ fn at(replay: &Replay, time_s: f64) -> Result<u64> {
 }
 
 /// What is there from the first moment to the last.
-fn timeless(replay: &Replay) -> Result<Vec<Message>> {
+fn timeless(replay: &Replay) -> Result<Vec<TimedMessage>> {
     let first = replay.vehicles.iter().filter_map(|v| v.frames.first()).map(|frame| frame.time_s);
     let ns = at(replay, first.fold(f64::INFINITY, f64::min))?;
     let top = replay.vehicles.iter().flat_map(|v| &v.frames).map(Frame::speed).fold(1.0, f64::max);
     let each = |entity: &dyn Fn(usize) -> Value| foxglove::scene((0..replay.vehicles.len()).map(entity).collect());
     const SCENE: &str = "foxglove.SceneUpdate";
     let mut messages = vec![
-        Message::new(ns, "/path", SCENE, each(&|i| foxglove::path(ns, i, &replay.vehicles[i], top))),
-        Message::new(ns, "/vehicles", SCENE, each(&|i| foxglove::model(ns, i))),
+        TimedMessage::new(ns, "/path", SCENE, each(&|i| foxglove::path(ns, i, &replay.vehicles[i], top))),
+        TimedMessage::new(ns, "/vehicles", SCENE, each(&|i| foxglove::model(ns, i))),
     ];
     if let Some(track) = &replay.track {
-        messages.push(Message::new(ns, "/track", SCENE, foxglove::course(ns, track)));
+        messages.push(TimedMessage::new(ns, "/track", SCENE, foxglove::course(ns, track)));
     }
     if let Some(first) = replay.vehicles.first() {
-        messages.push(Message::new(ns, "/poses", "foxglove.PosesInFrame", foxglove::poses(ns, first)));
+        messages.push(TimedMessage::new(ns, "/poses", "foxglove.PosesInFrame", foxglove::poses(ns, first)));
     }
     Ok(messages)
 }
@@ -120,7 +120,7 @@ fn observation(ns: u64, seen: &[f32]) -> Value {
     Value::Object(all)
 }
 
-fn remarks(replay: &Replay, i: usize) -> Result<Vec<Message>> {
+fn remarks(replay: &Replay, i: usize) -> Result<Vec<TimedMessage>> {
     let vehicle = &replay.vehicles[i];
     let label = |gate: usize| replay.track.as_ref().map_or(gate.to_string(), |track| track.gate_label(gate));
     let mut said: Vec<(f64, String, bool)> =
@@ -134,12 +134,12 @@ fn remarks(replay: &Replay, i: usize) -> Result<Vec<Message>> {
     }
     let messages = said.into_iter().map(|(time, text, failed)| {
         let ns = at(replay, time)?;
-        Ok(Message::new(ns, "/log", "foxglove.Log", foxglove::remark(ns, &body(i), &text, failed)))
+        Ok(TimedMessage::new(ns, "/log", "foxglove.Log", foxglove::remark(ns, &body(i), &text, failed)))
     });
     messages.collect()
 }
 
-fn write(messages: &[Message]) -> McapResult<Vec<u8>> {
+fn write(messages: &[TimedMessage]) -> McapResult<Vec<u8>> {
     let mut file: Writer<Cursor<Vec<u8>>> = WriteOptions::new()
         .library(concat!("racer/", env!("CARGO_PKG_VERSION")))
         .compression(Some(Compression::Zstd))

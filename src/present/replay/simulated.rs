@@ -1,6 +1,6 @@
 //! A policy's race, to be shown.
 
-use super::{Frame, Replay, Vehicle, laps};
+use super::{Frame, Replay, ReplayVehicle, laps};
 use crate::base::lane::{Level, dispatch};
 use crate::learn::nn::Network;
 use crate::model::track::Track;
@@ -34,7 +34,7 @@ pub fn race(
     }
 }
 
-fn vehicle(name: String, raced: &Raced, track: &Track, dt: f64) -> Vehicle {
+fn vehicle(name: String, raced: &Raced, track: &Track, dt: f64) -> ReplayVehicle {
     let frames = raced.steps.iter().enumerate().map(|(step, (state, command, target))| Frame {
         time_s: step as f64 * dt,
         position: state.position.map(f64::from),
@@ -49,5 +49,5 @@ fn vehicle(name: String, raced: &Raced, track: &Track, dt: f64) -> Vehicle {
     let gates = track.gates.len();
     let passes: Vec<_> = raced.passes.iter().enumerate().map(|(i, &time)| (time, i % gates)).collect();
     let failure = raced.failure.map(|cause| CAUSES[cause].replace('_', " "));
-    Vehicle { name, frames: frames.collect(), laps: laps(&passes), passes, failure }
+    ReplayVehicle { name, frames: frames.collect(), laps: laps(&passes), passes, failure }
 }

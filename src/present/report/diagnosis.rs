@@ -5,7 +5,7 @@ mod figures;
 mod findings;
 mod tables;
 
-pub use figures::{Figure, Figures};
+pub use figures::{DiagnosisFigures, Figure};
 
 use super::page::{self, digits, unit};
 use crate::insight::diagnose::Diagnosed;
@@ -20,7 +20,7 @@ figure{margin:1.5em 0}figcaption{color:#555}code{font-size:.9em}td.text,th.text{
 summary{cursor:pointer}";
 
 /// The page as HTML.
-pub fn page(diagnosed: &Diagnosed, figures: &Figures) -> String {
+pub fn page(diagnosed: &Diagnosed, figures: &DiagnosisFigures) -> String {
     let d = &diagnosed.diagnosis;
     let body = html! {
         h1 { "What the simulation of " (d.base) " gets wrong" }
@@ -56,7 +56,7 @@ fn drawn(figure: &Figure) -> Markup {
 }
 
 /// The open loop, as figure and table.
-fn ahead(d: &Diagnosis, figures: &Figures) -> Markup {
+fn ahead(d: &Diagnosis, figures: &DiagnosisFigures) -> Markup {
     html! {
         h2 { "Simulated ahead" }
         @match &figures.open_loop {

@@ -39,7 +39,7 @@ pub fn training(title: &str, rows: &[[Option<f64>; 2]], snapshots: &[Evaluated],
     let point =
         |row: &[Option<f64>; 2]| training::Point { minutes: minutes(row[0].unwrap_or_default()), gates: row[1] };
     let curve: Vec<_> = rows.iter().map(point).collect();
-    let evaluated = |e: &Evaluated| training::Evaluated {
+    let evaluated = |e: &Evaluated| training::SnapshotMark {
         minutes: minutes(e.seconds),
         fixed: e.report.completion(),
         random: e.report.random.as_ref().map_or(0.0, |random| random.lap_completion),

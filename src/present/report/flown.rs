@@ -21,7 +21,7 @@ use std::path::Path;
 const SPREAD: usize = 128;
 
 /// A policy, flown as `racer eval` does.
-struct Flown {
+struct FlownRun {
     name: String,
     snapshot: Snapshot,
     race: Race,
@@ -32,9 +32,9 @@ struct Flown {
 /// Page and figures of the run in `path`, with the commands of the one in `beside` next to its own.
 pub fn draw(path: &Path, beside: Option<&Path>) -> Result<Drawn> {
     threads::on(None, || {
-        let one = Flown::new(path)?;
-        let other = beside.map(Flown::new).transpose()?;
-        let all: Vec<&Flown> = [&one].into_iter().chain(&other).collect();
+        let one = FlownRun::new(path)?;
+        let other = beside.map(FlownRun::new).transpose()?;
+        let all: Vec<&FlownRun> = [&one].into_iter().chain(&other).collect();
         let figures = figures(path, &all)?;
         let rows: Vec<_> = all.iter().map(|f| (f.name.as_str(), &f.report)).collect();
         let page = page(&format!("Run {}", one.name), &one.snapshot.about, &rows, &figures);
@@ -44,7 +44,7 @@ pub fn draw(path: &Path, beside: Option<&Path>) -> Result<Drawn> {
 }
 
 /// The figures of the first of `all`, which is the run in `path`; the others' commands stand beside its own.
-fn figures(path: &Path, all: &[&Flown]) -> Result<Vec<Figure>> {
+fn figures(path: &Path, all: &[&FlownRun]) -> Result<Vec<Figure>> {
     let one = all[0];
     let about = &one.snapshot.about;
     let mut figures = Vec::new();
@@ -71,12 +71,12 @@ fn figures(path: &Path, all: &[&Flown]) -> Result<Vec<Figure>> {
     Ok(figures)
 }
 
-impl Flown {
+impl FlownRun {
     fn new(path: &Path) -> Result<Self> {
         let snapshot = Snapshot::read(&find(&path.display().to_string())?.snapshot)?;
         let (about, race) = (&snapshot.about, snapshot.race(None));
         let (report, trace) = both_starts(Level::best(), &race, &about.track, &snapshot.network, &about.eval);
         let name = path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned());
-        Ok(Flown { name, race, report, trace, snapshot })
+        Ok(FlownRun { name, race, report, trace, snapshot })
     }
 }

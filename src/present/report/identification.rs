@@ -1,7 +1,6 @@
 //! An identification as one page that needs nothing else: tables, findings, figures.
 
-mod figures;
-
+use super::signals;
 use crate::base::error::Result;
 use crate::insight::identify::AXES;
 use crate::insight::identify::document::CheckedLog;
@@ -12,7 +11,7 @@ use maud::{Markup, PreEscaped, html};
 
 /// The page as HTML.
 pub fn page(found: &Identification, logs: &[CheckedLog]) -> Result<String> {
-    let figures = found.channels.iter().map(figures::channel).collect::<Result<Vec<_>>>()?;
+    let figures = found.channels.iter().map(signals::channel).collect::<Result<Vec<_>>>()?;
     let body = html! {
         h1 { "Vehicle " (found.vehicle.name) }
         p {

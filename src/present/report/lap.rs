@@ -1,6 +1,6 @@
 //! A flight from above, coloured by speed, with the gates and the reset spline (the paper's Figures 2 and 5).
 
-use super::map::{self, Place};
+use super::map::{self, MapPoint};
 use super::plot;
 use crate::base::error::Result;
 use crate::model::track::Track;
@@ -24,7 +24,7 @@ pub fn reference(track: &Track, lap: &Reference, title: &str) -> Result<String> 
     draw(track, closed.map(|m| ((m.position.x, m.position.y), m.velocity.norm())).collect(), title)
 }
 
-fn draw(track: &Track, places: Vec<(Place, f64)>, title: &str) -> Result<String> {
+fn draw(track: &Track, places: Vec<(MapPoint, f64)>, title: &str) -> Result<String> {
     plot::svg(HEIGHT, |root| {
         let (area, scale) = root.split_horizontally(plot::WIDTH - SCALE);
         let top = places.iter().map(|(_, speed)| *speed).fold(1.0, f64::max);

@@ -10,13 +10,13 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// A place from above, m.
-pub type Place = (f64, f64);
+pub type MapPoint = (f64, f64);
 
 /// Axes of equal scale around the track and all `places`.
 pub fn chart<'a, 'b>(
     area: &DrawingArea<SVGBackend<'b>, Shift>,
     track: &Track,
-    places: impl Iterator<Item = Place>,
+    places: impl Iterator<Item = MapPoint>,
     title: &str,
 ) -> Result<Chart<'a, 'b>> {
     let gates = track.gates.iter().map(|g| (g.position_m[0], g.position_m[1]));
@@ -57,7 +57,7 @@ pub fn chart<'a, 'b>(
 }
 
 /// A line through `places`.
-pub fn path(chart: &mut Chart, places: impl IntoIterator<Item = Place>, style: ShapeStyle) -> Result<()> {
+pub fn path(chart: &mut Chart, places: impl IntoIterator<Item = MapPoint>, style: ShapeStyle) -> Result<()> {
     chart.draw_series([PathElement::new(places.into_iter().collect::<Vec<_>>(), style)]).map_err(drawing)?;
     Ok(())
 }
@@ -72,7 +72,7 @@ pub fn spline(chart: &mut Chart, track: &Track) -> Result<()> {
 }
 
 /// A line through `places` coloured by the speed (m/s) beside each, of at most `top`.
-pub fn coloured(chart: &mut Chart, places: &[(Place, f64)], top: f64) -> Result<()> {
+pub fn coloured(chart: &mut Chart, places: &[(MapPoint, f64)], top: f64) -> Result<()> {
     let pieces = places
         .windows(2)
         .map(|pair| PathElement::new([pair[0].0, pair[1].0], viridis(pair[0].1 / top).stroke_width(4)));

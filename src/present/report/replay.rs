@@ -1,7 +1,7 @@
 //! A flight in three dimensions, as one page that needs nothing else: no network, no library.
 
 use crate::model::track::{GateKind, Track};
-use crate::present::replay::{Replay, Vehicle};
+use crate::present::replay::{Replay, ReplayVehicle};
 use serde_json::{Value, json};
 
 const STYLE: &str = include_str!("replay/page.css");
@@ -74,7 +74,7 @@ fn track(track: &Track) -> Value {
 }
 
 /// Columns, because they are shorter than records.
-fn vehicle(vehicle: &Vehicle) -> Value {
+fn vehicle(vehicle: &ReplayVehicle) -> Value {
     let stride = vehicle.frames.len().div_ceil(MOMENTS).max(1);
     let frames: Vec<_> = vehicle.frames.iter().step_by(stride).collect();
     let all = |digits: i32, of: &dyn Fn(usize) -> Vec<f64>| -> Vec<Value> {

@@ -13,8 +13,8 @@ pub fn page(title: &str, about: &About, flown: &[(&str, &Report)], figures: &[Fi
     let percent = |x: f64| format!("{:.1} %", 100.0 * x);
     let lap =
         |b: &Benchmark| b.lap_time_s.map_or("-".into(), |t| format!("{:.2} ({:.2} to {:.2})", t.median, t.p05, t.p95));
-    type Cell<'a> = (&'a str, &'a dyn Fn(&Benchmark) -> String);
-    let rows: [Cell; 6] = [
+    type RunCell<'a> = (&'a str, &'a dyn Fn(&Benchmark) -> String);
+    let rows: [RunCell; 6] = [
         ("lap completion", &|b| percent(b.lap_completion)),
         ("lap time, s: median (5 to 95 %)", &lap),
         ("gates passed, mean", &|b| format!("{:.1}", b.gates_passed.mean)),

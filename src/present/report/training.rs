@@ -18,7 +18,7 @@ pub struct Point {
 
 /// One snapshot's evaluation.
 #[derive(Clone, Copy, Debug)]
-pub struct Evaluated {
+pub struct SnapshotMark {
     pub minutes: f64,
     /// Share of agents that completed a lap from the pad and from along the spline, 0..1.
     pub fixed: f64,
@@ -28,7 +28,7 @@ pub struct Evaluated {
 }
 
 /// An SVG with lap completion of the snapshots above and gates an episode below, over minutes of training.
-pub fn svg(curve: &[Point], snapshots: &[Evaluated], title: &str) -> Result<String> {
+pub fn svg(curve: &[Point], snapshots: &[SnapshotMark], title: &str) -> Result<String> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
@@ -43,7 +43,7 @@ pub fn svg(curve: &[Point], snapshots: &[Evaluated], title: &str) -> Result<Stri
     Ok(text)
 }
 
-fn draw_completion(area: &DrawingArea<SVGBackend, Shift>, snapshots: &[Evaluated], end: f64) -> Result<()> {
+fn draw_completion(area: &DrawingArea<SVGBackend, Shift>, snapshots: &[SnapshotMark], end: f64) -> Result<()> {
     let mut chart = ChartBuilder::on(area)
         .margin(10)
         .x_label_area_size(40)
@@ -58,8 +58,8 @@ fn draw_completion(area: &DrawingArea<SVGBackend, Shift>, snapshots: &[Evaluated
         .x_desc("training, minutes")
         .draw()
         .map_err(drawing)?;
-    type Of = fn(&Evaluated) -> f64;
-    let lines: [(&str, RGBColor, Of); 2] =
+    type MarkValue = fn(&SnapshotMark) -> f64;
+    let lines: [(&str, RGBColor, MarkValue); 2] =
         [("fixed start", BLUE_, |s| s.fixed), ("random start", ORANGE, |s| s.random)];
     for (name, colour, of) in lines {
         let points = || snapshots.iter().map(|s| (s.minutes, 100.0 * of(s)));

@@ -9,26 +9,26 @@ const EXPECTED: &str = "a run folder, a snapshot (.safetensors), or `latest`";
 
 /// A policy, and the run folder it belongs to where it was named by its run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct FoundPolicy {
     pub snapshot: PathBuf,
     pub run: Option<PathBuf>,
 }
 
 /// The policy that `name` means: of a run its best, or the last on the way where none was chosen. `latest` is the
 /// youngest run below `runs/`.
-pub fn find(name: &str) -> Result<Found, BadInput> {
+pub fn find(name: &str) -> Result<FoundPolicy, BadInput> {
     let path = match name {
         "latest" => latest(Path::new(RUNS))?,
         _ => PathBuf::from(name),
     };
     if path.is_file() {
-        return Ok(Found { snapshot: path, run: None });
+        return Ok(FoundPolicy { snapshot: path, run: None });
     }
     if !path.is_dir() {
         return Err(BadInput::new(name, "nothing of that name", EXPECTED, "`racer train` makes one"));
     }
     match best(&path) {
-        Some(snapshot) => Ok(Found { snapshot, run: Some(path) }),
+        Some(snapshot) => Ok(FoundPolicy { snapshot, run: Some(path) }),
         None => {
             let found = format!("a folder with neither {POLICY} nor {SNAPSHOTS}/*.safetensors");
             Err(BadInput::new(path.display(), found, EXPECTED, "was the training ended before its first snapshot?"))

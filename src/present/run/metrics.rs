@@ -16,14 +16,14 @@ pub const METRICS: &str = "metrics.csv";
 
 /// One iteration's numbers.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct LogRow {
     pub wall: SystemTime,
     pub steps: u64,
     /// Name and value; not a number where there was nothing to average over. Names are the same in every row.
     pub values: Vec<(String, f64)>,
 }
 
-impl Row {
+impl LogRow {
     /// What `iteration` reports. `seconds` is how long it took.
     pub fn new(iteration: &Iteration<Tally>, seconds: f64) -> Self {
         let Iteration { tally, losses, .. } = iteration;
@@ -73,7 +73,7 @@ impl Row {
 }
 
 /// All rows as CSV, with a header; cells without a number are empty.
-pub fn to_csv(rows: &[Row]) -> Result<Vec<u8>> {
+pub fn to_csv(rows: &[LogRow]) -> Result<Vec<u8>> {
     let cell = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
     encode::csv("the log of the training", |csv| {
         if let Some(first) = rows.first() {
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn a_log_is_read_as_it_was_written() {
         let values = vec![("a/b".to_string(), 1.5), ("c".to_string(), f64::NAN)];
-        let row = Row { wall: SystemTime::UNIX_EPOCH, steps: 64, values };
+        let row = LogRow { wall: SystemTime::UNIX_EPOCH, steps: 64, values };
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), to_csv(&[row]).unwrap()).unwrap();
         assert_eq!(read(file.path(), ["c", "steps", "a/b"]).unwrap(), [[None, Some(64.0), Some(1.5)]]);
@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn nothing_to_average_over_is_an_empty_cell() {
         let values = vec![("a/b".to_string(), 1.5), ("c".to_string(), f64::NAN)];
-        let row = Row { wall: SystemTime::UNIX_EPOCH, steps: 64, values };
+        let row = LogRow { wall: SystemTime::UNIX_EPOCH, steps: 64, values };
         assert_eq!(String::from_utf8(to_csv(std::slice::from_ref(&row)).unwrap()).unwrap(), "steps,a/b,c\n64,1.5,\n");
         assert_eq!((row.get("a/b"), row.get("c"), row.get("d")), (Some(1.5), None, None));
         assert!(to_csv(&[]).unwrap().is_empty());

@@ -3,7 +3,7 @@
 //! The format is small: a chain of records (length, checksum, data, checksum), each a protocol buffer `Event`. The
 //! crates that write it bring a protocol-buffer compiler or a tensor library along, or are no longer kept up.
 
-use super::metrics::Row;
+use super::metrics::LogRow;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Name of the file, as TensorBoard looks for it.
@@ -12,7 +12,7 @@ pub fn file_name(started: SystemTime) -> String {
 }
 
 /// The whole file: a version record and one event a row. Values that are not finite are left out.
-pub fn events(started: SystemTime, rows: &[Row]) -> Vec<u8> {
+pub fn events(started: SystemTime, rows: &[LogRow]) -> Vec<u8> {
     let mut file = Vec::new();
     let mut version = double(1, seconds(started));
     version.extend(bytes(3, b"brain.Event:2"));
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn values_that_are_not_finite_are_left_out() {
-        let row = |value| Row { wall: UNIX_EPOCH, steps: 1, values: vec![("tag".into(), value)] };
+        let row = |value| LogRow { wall: UNIX_EPOCH, steps: 1, values: vec![("tag".into(), value)] };
         let holds = |value| events(UNIX_EPOCH, &[row(value)]).windows(3).any(|window| window == b"tag");
         assert!(holds(1.0) && !holds(f64::NAN));
     }

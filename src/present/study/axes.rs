@@ -12,21 +12,21 @@ const MOST: usize = 100_000;
 
 /// Something that varies: a key of the grid, or a group of cases.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
+pub struct StudyAxis {
     pub name: String,
-    pub levels: Vec<Level>,
+    pub levels: Vec<AxisValue>,
 }
 
 /// One value of an axis: what it is called, and what it sets.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Level {
+pub struct AxisValue {
     pub label: String,
     pub settings: Vec<(String, Value)>,
 }
 
 /// One setting: a level of each axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cell {
+pub struct StudyCell {
     pub name: String,
     /// Label of its level on each axis.
     pub levels: Vec<String>,
@@ -35,7 +35,7 @@ pub struct Cell {
 }
 
 /// The axes in the file's order, cases before the grid.
-pub fn axes(study: &Study) -> Result<Vec<Axis>, Invalid> {
+pub fn axes(study: &Study) -> Result<Vec<StudyAxis>, Invalid> {
     let mut axes = Vec::new();
     for (group, cases) in &study.cases {
         axes.push(group_axis(group, cases).map_err(|invalid| invalid.within("cases"))?);
@@ -47,8 +47,8 @@ pub fn axes(study: &Study) -> Result<Vec<Axis>, Invalid> {
             return Err(Invalid::new(&key, values, "a list of values", "write it in [set] where it does not vary")
                 .within("grid"));
         };
-        let level = |value: Value| Level { label: names::value(&value), settings: vec![(key.clone(), value)] };
-        axes.push(Axis { name, levels: values.into_iter().map(level).collect() });
+        let level = |value: Value| AxisValue { label: names::value(&value), settings: vec![(key.clone(), value)] };
+        axes.push(StudyAxis { name, levels: values.into_iter().map(level).collect() });
     }
     axes.iter().try_for_each(check_levels)?;
     check_keys(study, &axes)?;
@@ -56,7 +56,7 @@ pub fn axes(study: &Study) -> Result<Vec<Axis>, Invalid> {
 }
 
 /// All combinations of levels; the last axis varies fastest. One without axes.
-pub fn cells(study: &Study, axes: &[Axis]) -> Result<Vec<Cell>, Invalid> {
+pub fn cells(study: &Study, axes: &[StudyAxis]) -> Result<Vec<StudyCell>, Invalid> {
     let many = axes.iter().try_fold(1usize, |many, axis| many.checked_mul(axis.levels.len()));
     if many.is_none_or(|many| many > MOST) {
         return Err(Invalid::new("grid", "more combinations", &format!("at most {MOST}"), "take values out"));
@@ -76,8 +76,8 @@ pub fn cells(study: &Study, axes: &[Axis]) -> Result<Vec<Cell>, Invalid> {
         cells = grown.collect();
     }
     let name = |parts: &[String]| if parts.is_empty() { "base".into() } else { names::join(parts) };
-    let cells = cells.into_iter().map(|(levels, parts, settings)| Cell { name: name(&parts), levels, settings });
-    let cells: Vec<Cell> = cells.collect();
+    let cells = cells.into_iter().map(|(levels, parts, settings)| StudyCell { name: name(&parts), levels, settings });
+    let cells: Vec<StudyCell> = cells.collect();
     let twice = cells.iter().enumerate().find(|(i, cell)| cells[..*i].iter().any(|other| other.name == cell.name));
     match twice {
         Some((_, cell)) => {
@@ -93,20 +93,20 @@ fn with(list: &[String], one: String) -> Vec<String> {
     list
 }
 
-fn group_axis(group: &str, cases: &Value) -> Result<Axis, Invalid> {
+fn group_axis(group: &str, cases: &Value) -> Result<StudyAxis, Invalid> {
     let example = "write [cases.GROUP] with lines such as name = { \"ppo.environments\" = 2048, \"ppo.rollout\" = 64 }";
     let Value::Table(cases) = cases else {
         return Err(Invalid::new(group, cases, "a table of named cases", example));
     };
     let levels = cases.iter().map(|(label, settings)| match settings {
-        Value::Table(settings) => Ok(Level { label: label.clone(), settings: flat(settings) }),
+        Value::Table(settings) => Ok(AxisValue { label: label.clone(), settings: flat(settings) }),
         other => Err(Invalid::new(&format!("{group}.{label}"), other, "a table of keys and values", example)),
     });
-    Ok(Axis { name: group.into(), levels: levels.collect::<Result<_, _>>()? })
+    Ok(StudyAxis { name: group.into(), levels: levels.collect::<Result<_, _>>()? })
 }
 
-fn check_levels(axis: &Axis) -> Result<(), Invalid> {
-    let Axis { name, levels } = axis;
+fn check_levels(axis: &StudyAxis) -> Result<(), Invalid> {
+    let StudyAxis { name, levels } = axis;
     Invalid::unless(!levels.is_empty(), name, "nothing", "at least one value", "add one, or take the key out")?;
     let twice = levels.iter().enumerate().find(|(i, level)| levels[..*i].iter().any(|l| l.label == level.label));
     match twice {
@@ -118,7 +118,7 @@ fn check_levels(axis: &Axis) -> Result<(), Invalid> {
 }
 
 /// No key is set in two places, and none that the study sets itself.
-fn check_keys(study: &Study, axes: &[Axis]) -> Result<(), Invalid> {
+fn check_keys(study: &Study, axes: &[StudyAxis]) -> Result<(), Invalid> {
     let mut seen: Vec<(String, String)> =
         study.agents.iter().map(|_| ("eval.agents".into(), "agents".into())).collect();
     let mut sets = vec![("set".to_string(), flat(&study.set))];

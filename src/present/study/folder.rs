@@ -1,6 +1,6 @@
 //! A study's folder: what is finished, whether it is still what the study asks for, and where new runs go.
 
-use super::plan::{Plan, Planned};
+use super::plan::{Planned, StudyPlan};
 use super::result::{RESULT, RunResult};
 use super::results::Results;
 use super::tables;
@@ -50,7 +50,7 @@ impl Folder {
     }
 
     /// Writes plan and study file, in place of those of an earlier start.
-    pub fn begin(&self, plan: &Plan, study: &str) -> Result<()> {
+    pub fn begin(&self, plan: &StudyPlan, study: &str) -> Result<()> {
         let failed = |error| {
             BadInput::new(self.path.display(), error, "a folder that can be written to", "choose another path (--out)")
         };
@@ -78,7 +78,7 @@ impl Folder {
 
     /// The results of all that is finished.
     pub fn results(&self) -> Result<Results> {
-        let plan: Plan = json(&self.path.join(PLAN), "the plan of a study")?;
+        let plan: StudyPlan = json(&self.path.join(PLAN), "the plan of a study")?;
         plan.check().map_err(|invalid| BadInput::at(self.path.join(PLAN).display(), invalid))?;
         let read = |name: &str| -> Result<Option<RunResult>, BadInput> {
             let path = self.run(name).join(RESULT);

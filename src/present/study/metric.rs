@@ -1,8 +1,8 @@
 //! The columns of a study's tables, each defined here and nowhere else.
 
-use super::result::{Moment, Passed, RunResult};
+use super::result::{Passed, RunResult, TrainedFor};
 
-type Of = Box<dyn Fn(&RunResult) -> Option<f64> + Sync>;
+type MetricOf = Box<dyn Fn(&RunResult) -> Option<f64> + Sync>;
 
 /// One number of a run.
 pub struct Metric {
@@ -12,7 +12,7 @@ pub struct Metric {
     pub clock: bool,
     /// Whether it lies in 0..1.
     pub share: bool,
-    of: Of,
+    of: MetricOf,
 }
 
 impl Metric {
@@ -51,11 +51,11 @@ pub fn metrics(sections: &[String]) -> Vec<Metric> {
     all
 }
 
-fn steps(moment: Moment) -> f64 {
+fn steps(moment: TrainedFor) -> f64 {
     moment.steps as f64
 }
 
-fn seconds(moment: Moment) -> f64 {
+fn seconds(moment: TrainedFor) -> f64 {
     moment.seconds
 }
 
@@ -72,7 +72,7 @@ fn clock(name: &str, of: fn(&RunResult) -> Option<f64>) -> Metric {
 }
 
 /// When the section was first passed.
-fn section(name: &str, unit: &str, clock: bool, of: fn(Moment) -> f64) -> Metric {
+fn section(name: &str, unit: &str, clock: bool, of: fn(TrainedFor) -> f64) -> Metric {
     let section = name.to_string();
     let first = move |r: &RunResult| {
         let passed: Option<&Passed> = r.sections.iter().find(|passed| passed.section == section);

@@ -1,6 +1,6 @@
 //! What a study comes to: every run with its whole configuration, resolved and checked before the first begins.
 
-use super::axes::{self, Cell};
+use super::axes::{self, StudyCell};
 use super::file::{Study, name_of};
 use crate::base::check::{BadInput, Check, Invalid};
 use crate::base::document::Document;
@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 /// Everything about a study that its tables need: `plan.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
+pub struct StudyPlan {
     pub study: String,
     /// Budget of each run; one of the two.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -50,7 +50,7 @@ pub struct PlannedRun {
 
 /// A study ready to begin.
 pub struct Planned {
-    pub plan: Plan,
+    pub plan: StudyPlan,
     /// Base configuration: name or file.
     pub config: String,
     /// What `racer train` sets for each run, and what that resolves to.
@@ -59,12 +59,12 @@ pub struct Planned {
 
 /// Budget on the command line, which counts before the file's.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Budget {
+pub struct StudyBudget {
     pub minutes: Option<f64>,
     pub steps: Option<u64>,
 }
 
-impl Plan {
+impl StudyPlan {
     /// Budget of each run, in words.
     pub fn budget(&self) -> String {
         match (self.minutes, self.steps.unwrap_or_default()) {
@@ -76,7 +76,7 @@ impl Plan {
 }
 
 /// Spans the grid, resolves and checks every run of `study`, which `document` holds. `argument` names the study.
-pub fn plan(argument: &str, document: &Document, study: &Study, budget: Budget) -> Result<Planned, BadInput> {
+pub fn plan(argument: &str, document: &Document, study: &Study, budget: StudyBudget) -> Result<Planned, BadInput> {
     let blame = |invalid: Invalid| document.blame(invalid);
     let axes = axes::axes(study).map_err(blame)?;
     let cells = axes::cells(study, &axes).map_err(blame)?;
@@ -102,7 +102,7 @@ pub fn plan(argument: &str, document: &Document, study: &Study, budget: Budget) 
             sections.push(section.name.clone());
         }
     }
-    let plan = Plan {
+    let plan = StudyPlan {
         study: name_of(argument),
         minutes: first.config.budget.minutes,
         steps: first.config.budget.steps,
@@ -119,7 +119,13 @@ pub fn plan(argument: &str, document: &Document, study: &Study, budget: Budget) 
 }
 
 /// What a run sets, in the order in which it counts.
-fn settings(document: &Document, study: &Study, cell: &Cell, seed: Option<u64>, budget: Budget) -> Vec<Setting> {
+fn settings(
+    document: &Document,
+    study: &Study,
+    cell: &StudyCell,
+    seed: Option<u64>,
+    budget: StudyBudget,
+) -> Vec<Setting> {
     let own =
         |key: &str, to: &str, value: toml::Value| Setting { key: to.into(), value, option: document.place_of(key) };
     let mut all: Vec<Setting> = Vec::new();
@@ -129,11 +135,11 @@ fn settings(document: &Document, study: &Study, cell: &Cell, seed: Option<u64>, 
     }
     all.extend(seed.map(|seed| own("seeds", "seed", (seed as i64).into())));
     match budget {
-        Budget { minutes: None, steps: None } => {
+        StudyBudget { minutes: None, steps: None } => {
             all.extend(study.minutes.map(|minutes| own("minutes", "budget.minutes", minutes.into())));
             all.extend(study.steps.map(|steps| own("steps", "budget.steps", (steps as i64).into())));
         }
-        Budget { minutes, steps } => {
+        StudyBudget { minutes, steps } => {
             all.extend(minutes.map(|minutes| Setting::of("--minutes", "budget.minutes", minutes)));
             all.extend(steps.map(|steps| Setting::of("--steps", "budget.steps", steps as i64)));
         }
@@ -150,13 +156,13 @@ fn place(document: &Document, study: &Study, key: &str) -> String {
     places.find(|place| document.sets(place)).map_or(document.label.clone(), |found| document.place_of(&found))
 }
 
-fn described(cell: Cell) -> PlannedSetting {
+fn described(cell: StudyCell) -> PlannedSetting {
     let json = |value: toml::Value| serde_json::to_value(value).unwrap_or_default();
     let keys = cell.settings.into_iter().map(|(key, value)| (key, json(value))).collect();
     PlannedSetting { name: cell.name, levels: cell.levels, keys }
 }
 
-impl Check for Plan {
+impl Check for StudyPlan {
     fn check(&self) -> Result<(), Invalid> {
         let known = self.runs.iter().all(|run| run.setting < self.settings.len());
         Invalid::unless(known, "runs", "a setting that is not there", "places in the list of settings", "")?;

@@ -19,7 +19,7 @@ run is drawn without uncertainty, and nothing is given where all have one.";
 
 /// What decides, larger for the better: fixed-start lap completion of a run, less median lap time, mean number of
 /// gates.
-pub type Score = [f64; 3];
+pub type RunScore = [f64; 3];
 
 /// Lap time of a run that completes no lap, s: longer than any, and still a number to take means of.
 pub const NO_LAP_S: f64 = 1e3;
@@ -27,7 +27,7 @@ pub const NO_LAP_S: f64 = 1e3;
 /// What is ranked.
 pub struct Scored {
     pub name: String,
-    pub scores: Vec<Score>,
+    pub scores: Vec<RunScore>,
 }
 
 /// A setting's place.
@@ -54,7 +54,7 @@ pub fn ranking(mut settings: Vec<Scored>) -> Vec<Ranked> {
         let rng = Philox::new(0);
         for draw in 0..DRAWS {
             let mut rng = rng.sequence(Stream::Bootstrap, draw as u32, 0);
-            let means: Vec<Score> = settings.iter().map(|setting| drawn(&mut rng, &setting.scores)).collect();
+            let means: Vec<RunScore> = settings.iter().map(|setting| drawn(&mut rng, &setting.scores)).collect();
             for (i, place) in places(&means).into_iter().enumerate() {
                 ranks[i].push(place.rank);
                 best[i] += place.best / DRAWS as f64;
@@ -75,19 +75,19 @@ pub fn ranking(mut settings: Vec<Scored>) -> Vec<Ranked> {
     ranked.collect()
 }
 
-fn mean(scores: &[Score]) -> Score {
+fn mean(scores: &[RunScore]) -> RunScore {
     [0, 1, 2].map(|k| stats::mean(&scores.iter().map(|score| score[k]).collect::<Vec<_>>()))
 }
 
 /// Greater for the better one. Sums in another order may differ in the last digits and mean the same.
-fn order(a: &Score, b: &Score) -> Ordering {
+fn order(a: &RunScore, b: &RunScore) -> Ordering {
     const SAME: f64 = 1e-12;
     let unequal = a.iter().zip(b).find(|(a, b)| (**a - **b).abs() > SAME);
     unequal.map_or(Ordering::Equal, |(a, b)| a.total_cmp(b))
 }
 
 /// Mean of as many scores drawn with replacement, its distance from their mean corrected for their number.
-fn drawn(rng: &mut Sequence, scores: &[Score]) -> Score {
+fn drawn(rng: &mut Sequence, scores: &[RunScore]) -> RunScore {
     let n = scores.len();
     let middle = mean(scores);
     if n < 2 {
@@ -100,17 +100,17 @@ fn drawn(rng: &mut Sequence, scores: &[Score]) -> Score {
 }
 
 /// A place in one draw: the middle of those that equals share, and the share of being first.
-struct Place {
+struct SharedRank {
     rank: f64,
     best: f64,
 }
 
-fn places(means: &[Score]) -> Vec<Place> {
-    let place = |mean: &Score| {
+fn places(means: &[RunScore]) -> Vec<SharedRank> {
+    let place = |mean: &RunScore| {
         let count = |wanted: Ordering| means.iter().filter(|other| order(other, mean) == wanted).count();
         let (above, equal) = (count(Ordering::Greater), count(Ordering::Equal));
         let best = if above == 0 { 1.0 / equal as f64 } else { 0.0 };
-        Place { rank: above as f64 + 0.5 * (equal as f64 + 1.0), best }
+        SharedRank { rank: above as f64 + 0.5 * (equal as f64 + 1.0), best }
     };
     means.iter().map(place).collect()
 }

@@ -12,7 +12,7 @@ pub const RESULT: &str = "result.json";
 
 /// A snapshot's place in the training.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Moment {
+pub struct TrainedFor {
     /// Environment steps, and training time in seconds.
     pub steps: u64,
     pub seconds: f64,
@@ -23,7 +23,7 @@ pub struct Moment {
 pub struct Passed {
     pub section: String,
     /// None where no snapshot could.
-    pub first: Option<Moment>,
+    pub first: Option<TrainedFor>,
 }
 
 /// The run's numbers.
@@ -36,18 +36,18 @@ pub struct RunResult {
     pub threads: usize,
     pub snapshots: usize,
     /// The whole training.
-    pub trained: Moment,
+    pub trained: TrainedFor,
     /// The best snapshot: highest fixed-start lap completion, of equals the fastest.
-    pub best: Moment,
+    pub best: TrainedFor,
     pub fixed: Benchmark,
     pub random: Benchmark,
     /// The first snapshot ready for deployment: 95 % of fixed-start agents complete a lap.
-    pub ready: Option<Moment>,
+    pub ready: Option<TrainedFor>,
     pub sections: Vec<Passed>,
 }
 
 /// Which run it is.
-pub struct About<'a> {
+pub struct RunLabel<'a> {
     pub run: &'a str,
     pub setting: &'a str,
     pub seed: u64,
@@ -56,7 +56,7 @@ pub struct About<'a> {
 
 /// Reads the evaluations in the run folder `folder`. A section is passed from `section_share` of the random-start
 /// agents on.
-pub fn of(folder: &Path, about: &About, section_share: f64) -> Result<RunResult, BadInput> {
+pub fn of(folder: &Path, about: &RunLabel, section_share: f64) -> Result<RunResult, BadInput> {
     let evaluated = evaluated::read(folder)?;
     summarised(&evaluated, about, section_share).ok_or_else(|| {
         let expected = "snapshots, each evaluated from both starts";
@@ -64,8 +64,8 @@ pub fn of(folder: &Path, about: &About, section_share: f64) -> Result<RunResult,
     })
 }
 
-fn summarised(evaluated: &[Evaluated], about: &About, section_share: f64) -> Option<RunResult> {
-    let moment = |e: &Evaluated| Moment { steps: e.steps, seconds: e.seconds };
+fn summarised(evaluated: &[Evaluated], about: &RunLabel, section_share: f64) -> Option<RunResult> {
+    let moment = |e: &Evaluated| TrainedFor { steps: e.steps, seconds: e.seconds };
     let best = evaluated::best(evaluated)?;
     let ready = evaluated::counting(evaluated).iter().find(|e| e.report.completion() >= DEPLOYABLE);
     let (fixed, random) = (best.report.fixed.clone()?, best.report.random.clone()?);
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn firsts_and_the_best() {
-        let about = About { run: "a,seed=1", setting: "a", seed: 1, threads: 2 };
+        let about = RunLabel { run: "a,seed=1", setting: "a", seed: 1, threads: 2 };
         let run =
             [(10, 0.2, 0.05), (20, 0.95, 0.1), (30, 1.0, 0.4), (40, 0.9, 0.0)].map(|(s, f, l)| evaluated(s, f, l));
         let result = summarised(&run, &about, 0.1).unwrap();

@@ -1,53 +1,53 @@
 //! A study's results: runs, settings, axes, ranking. Made from the plan and from whatever is finished.
 
 use super::metric::{Metric, metrics};
-use super::plan::Plan;
+use super::plan::StudyPlan;
 use super::ranking::{self, NO_LAP_S, Ranked, Scored, ranking};
 use super::result::RunResult;
-use super::summary::Summary;
+use super::summary::SeedSummary;
 use crate::race::eval::choose::DEPLOYABLE;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Everything that is printed, written and drawn.
 pub struct Results {
-    pub plan: Plan,
+    pub plan: StudyPlan,
     pub metrics: Vec<Metric>,
     /// In the plan's order; none where a run is not finished.
     pub runs: Vec<Option<RunResult>>,
     /// The finished runs of each setting, summarised; in the plan's order.
-    pub settings: Vec<Group>,
+    pub settings: Vec<RunGroup>,
     /// The same for each value of each axis that varies; none of a study with a single axis, where settings say it.
-    pub axes: Vec<(String, Vec<Group>)>,
+    pub axes: Vec<(String, Vec<RunGroup>)>,
     pub ranking: Vec<Ranked>,
 }
 
 /// Runs that have something in common.
 #[derive(Clone, Debug, Serialize)]
-pub struct Group {
+pub struct RunGroup {
     pub name: String,
     pub planned: usize,
     pub finished: usize,
     /// By metric, without those that no run has.
-    pub metrics: BTreeMap<String, Summary>,
+    pub metrics: BTreeMap<String, SeedSummary>,
 }
 
 impl Results {
-    pub fn new(plan: Plan, runs: Vec<Option<RunResult>>) -> Self {
+    pub fn new(plan: StudyPlan, runs: Vec<Option<RunResult>>) -> Self {
         let metrics = metrics(&plan.sections);
         let group = |name: &str, belongs: &dyn Fn(usize) -> bool| {
             let places = plan.runs.iter().enumerate().filter(|(_, run)| belongs(run.setting)).map(|(i, _)| i);
             let places: Vec<usize> = places.collect();
             let finished: Vec<&RunResult> = places.iter().filter_map(|&i| runs[i].as_ref()).collect();
-            let of = |metric: &Metric| Some((metric.name.clone(), Summary::of(metric, &finished)?));
-            Group {
+            let of = |metric: &Metric| Some((metric.name.clone(), SeedSummary::of(metric, &finished)?));
+            RunGroup {
                 name: name.into(),
                 planned: places.len(),
                 finished: finished.len(),
                 metrics: metrics.iter().filter_map(of).collect(),
             }
         };
-        let settings: Vec<Group> =
+        let settings: Vec<RunGroup> =
             plan.settings.iter().enumerate().map(|(i, setting)| group(&setting.name, &|of| of == i)).collect();
         let mut axes = Vec::new();
         for (a, axis) in plan.axes.iter().enumerate() {

@@ -10,7 +10,7 @@ pub const CONFIDENCE: f64 = 0.95;
 
 /// Mean and spread over the runs that have the metric.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Summary {
+pub struct SeedSummary {
     /// Runs that have it.
     pub n: usize,
     pub mean: f64,
@@ -22,7 +22,7 @@ pub struct Summary {
     pub interval: Option<[f64; 2]>,
 }
 
-impl Summary {
+impl SeedSummary {
     /// None where no run has it.
     pub fn of(metric: &Metric, runs: &[&RunResult]) -> Option<Self> {
         let x: Vec<f64> = runs.iter().filter_map(|run| metric.of(run)).collect();

@@ -1,8 +1,8 @@
 //! Results as files: CSV tables and one JSON document.
 
 use super::metric::Metric;
-use super::results::{Group, Results};
-use super::summary::Summary;
+use super::results::{Results, RunGroup};
+use super::summary::SeedSummary;
 use crate::base::encode;
 use crate::base::error::{Error, Result};
 use serde::Serialize;
@@ -44,13 +44,13 @@ fn runs(results: &Results, metrics: &[&Metric]) -> Result<Vec<u8>> {
 }
 
 /// A line each group and metric.
-fn groups(results: &Results, axes: &[(String, Vec<Group>)]) -> Result<Vec<u8>> {
+fn groups(results: &Results, axes: &[(String, Vec<RunGroup>)]) -> Result<Vec<u8>> {
     encode::csv("the table of settings", |csv| {
         csv.write_record(["axis", "value", "metric", "n", "mean", "sd", "min", "max", "low_95", "high_95"])?;
         for (axis, groups) in axes {
             for group in groups {
                 for metric in results.shown() {
-                    let Some(Summary { n, mean, sd, min, max, interval }) = group.metrics.get(&metric.name) else {
+                    let Some(SeedSummary { n, mean, sd, min, max, interval }) = group.metrics.get(&metric.name) else {
                         continue;
                     };
                     let [low, high] = interval.map_or([None; 2], |ends| ends.map(Some));
@@ -92,11 +92,11 @@ struct RunLine<'a> {
 /// All tables and how they were made.
 pub fn json(results: &Results) -> Result<String> {
     let shown: Vec<&Metric> = results.shown().collect();
-    let of = |metrics: &BTreeMap<String, Summary>| {
+    let of = |metrics: &BTreeMap<String, SeedSummary>| {
         let metrics = metrics.iter().filter(|(name, _)| shown.iter().any(|metric| metric.name == **name));
         metrics.map(|(name, summary)| (name.clone(), *summary)).collect::<BTreeMap<_, _>>()
     };
-    let group = |group: &Group| Group { metrics: of(&group.metrics), ..group.clone() };
+    let group = |group: &RunGroup| RunGroup { metrics: of(&group.metrics), ..group.clone() };
     let runs = results.runs.iter().flatten().map(|run| RunLine {
         run: &run.run,
         setting: &run.setting,
@@ -104,7 +104,7 @@ pub fn json(results: &Results) -> Result<String> {
         metrics: shown.iter().map(|metric| (metric.name.as_str(), metric.of(run))).collect(),
     });
     let axes = results.axes.iter().map(|(axis, groups)| {
-        let levels: Vec<Group> = groups.iter().map(group).collect();
+        let levels: Vec<RunGroup> = groups.iter().map(group).collect();
         serde_json::to_value(levels).map(|levels| (axis.clone(), levels)).map_err(Error::encode("the axes"))
     });
     let methods: BTreeMap<_, _> = results.methods().into_iter().collect();

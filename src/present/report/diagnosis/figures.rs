@@ -31,20 +31,21 @@ pub struct Figure {
 }
 
 /// A channel and its figures.
-pub struct Shown {
+pub struct ChannelFigures {
     pub channel: ChannelFigure,
     pub figures: Vec<Figure>,
 }
 
 /// All figures of the diagnosis: of its channels, and of the open loop where the flights allow it.
-pub struct Figures {
-    pub channels: Vec<Shown>,
+pub struct DiagnosisFigures {
+    pub channels: Vec<ChannelFigures>,
     pub open_loop: Option<Figure>,
 }
 
-impl Figures {
+impl DiagnosisFigures {
     pub fn new(diagnosed: &Diagnosed) -> Result<Self> {
-        let shown = channels(diagnosed).into_iter().map(|channel| Ok(Shown { figures: of(&channel)?, channel }));
+        let shown =
+            channels(diagnosed).into_iter().map(|channel| Ok(ChannelFigures { figures: of(&channel)?, channel }));
         let ahead = &diagnosed.diagnosis.horizons;
         let open_loop = (!ahead.is_empty()).then(|| open_loop(ahead)).transpose()?;
         Ok(Self { channels: shown.collect::<Result<_>>()?, open_loop })

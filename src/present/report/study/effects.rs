@@ -4,7 +4,7 @@ use super::Figure;
 use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, Area, TEXT};
-use crate::present::study::results::{Group, Results};
+use crate::present::study::results::{Results, RunGroup};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -52,7 +52,7 @@ column is the same in all rows.";
 fn panel(
     area: &Area,
     axis: &str,
-    levels: &[Group],
+    levels: &[RunGroup],
     (metric, factor): (&str, f64),
     range: std::ops::Range<f64>,
 ) -> Result<()> {

@@ -2,8 +2,8 @@
 
 use crate::present::report::page::number;
 use crate::present::study::metric::Metric;
-use crate::present::study::results::{Group, Results};
-use crate::present::study::summary::Summary;
+use crate::present::study::results::{Results, RunGroup};
+use crate::present::study::summary::SeedSummary;
 use maud::{Markup, html};
 
 /// Heading, metric, factor and digits of what stands beside a setting.
@@ -61,7 +61,7 @@ pub fn axes(results: &Results) -> Markup {
     }
 }
 
-fn laps(group: &Group) -> Markup {
+fn laps(group: &RunGroup) -> Markup {
     let completion = group.metrics.get("fixed_completion");
     let interval = completion.and_then(|summary| summary.interval);
     let ready = group.metrics.get("ready").map(|s| format!("{:.0} of {}", s.mean * s.n as f64, s.n));
@@ -74,7 +74,7 @@ fn laps(group: &Group) -> Markup {
     }
 }
 
-fn means(group: &Group) -> Markup {
+fn means(group: &RunGroup) -> Markup {
     let mean = |name: &str, factor: f64| group.metrics.get(name).map(|summary| factor * summary.mean);
     html! { @for (_, name, factor, digits) in COLUMNS { td { (number(mean(name, factor), digits)) } } }
 }
@@ -97,7 +97,7 @@ pub fn settings(results: &Results) -> Markup {
     }
 }
 
-fn line(metric: &Metric, s: &Summary) -> Markup {
+fn line(metric: &Metric, s: &SeedSummary) -> Markup {
     html! {
         tr {
             td { (metric.name) } td { (s.n) } td { (short(s.mean)) }

@@ -9,11 +9,11 @@ use crate::present::report::plot::{self, Area, TEXT};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-type Of = fn(&Horizon) -> f64;
+type HorizonValue = fn(&Horizon) -> f64;
 
 /// Bars before and after, one panel a quantity.
 pub fn draw(ahead: &[Ahead]) -> Result<String> {
-    let panels: [(&str, Of); 3] = [
+    let panels: [(&str, HorizonValue); 3] = [
         ("velocity, m/s off", |h| h.velocity_m_s),
         ("position, m off", |h| h.position_m),
         ("attitude, deg off", |h| h.attitude_deg),
@@ -26,7 +26,7 @@ pub fn draw(ahead: &[Ahead]) -> Result<String> {
     })
 }
 
-fn panel(area: &Area, name: &str, of: Of, ahead: &[Ahead]) -> Result<()> {
+fn panel(area: &Area, name: &str, of: HorizonValue, ahead: &[Ahead]) -> Result<()> {
     let top = ahead.iter().flat_map(|a| [of(&a.before), of(&a.after)]).fold(1e-9, f64::max);
     let mut chart = ChartBuilder::on(area)
         .caption(name, ("sans-serif", 18))

@@ -12,8 +12,8 @@ use plotters::prelude::*;
 
 /// Means with error bars, before and after.
 pub fn draw(channel: &ChannelFigure, profile: &Profile) -> Result<String> {
-    type Of = fn(&ProfileLevel) -> [f64; 2];
-    let sides: [(Of, RGBColor); 2] = [(|l| l.before, BEFORE), (|l| l.after, AFTER)];
+    type ProfileSide = fn(&ProfileLevel) -> [f64; 2];
+    let sides: [(ProfileSide, RGBColor); 2] = [(|l| l.before, BEFORE), (|l| l.after, AFTER)];
     plot::keyed(320, &super::lines(), |root| {
         let x = range(profile.levels.iter().map(|l| l.signal));
         let ends = |[mean, error]: [f64; 2]| [mean - NORMAL_95 * error, mean + NORMAL_95 * error];
