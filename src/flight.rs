@@ -8,7 +8,7 @@ pub mod fly;
 pub mod lowpass;
 pub mod mapping;
 pub mod mcap;
-mod open;
+pub mod open;
 pub mod pilot;
 pub mod sensors;
 pub mod series;
@@ -17,7 +17,7 @@ pub mod table;
 mod ulog;
 pub mod write;
 
-pub use open::{Opened, Options, open, open_with};
+pub use open::{Options, open, open_with};
 
 /// Numbers over time: row i was measured at `time_s[i]`. NaN stands for what was not measured.
 #[derive(Clone, Debug, Default, PartialEq)]

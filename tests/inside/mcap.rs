@@ -30,7 +30,7 @@ fn log(n: usize) -> Log {
 }
 
 fn columns<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64; N]> {
-    (0..table.len()).map(|i| names.map(|name| table.columns[name][i])).collect()
+    (0..table.rows()).map(|i| names.map(|name| table.columns[name][i])).collect()
 }
 
 const SETPOINT: [&str; 4] = ["body_rate.x", "body_rate.y", "body_rate.z", "thrust"];
@@ -129,6 +129,6 @@ fn five_minutes_are_read_in_seconds() {
     let read = tables(&bytes, &|_| true).unwrap();
     let took = start.elapsed() - written;
     println!("{} MB written in {written:.1?}, read in {took:.1?}", bytes.len() / 1_000_000);
-    assert_eq!(read.tables["/imu"].len(), 150_000);
+    assert_eq!(read.tables["/imu"].rows(), 150_000);
     assert!(took.as_secs() < 10, "{took:?}");
 }

@@ -3,7 +3,8 @@
 use crate::support::{flight_data, racer};
 use flate2::{Compression, write::GzEncoder};
 use proptest::prelude::*;
-use racer::flight::{self, Log, Opened, Options, Readable};
+use racer::flight::open::Opened;
+use racer::flight::{self, Log, Options, Readable};
 use std::io::Write;
 use std::path::Path;
 use tempfile::TempDir;

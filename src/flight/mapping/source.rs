@@ -111,7 +111,7 @@ pub fn advice(name: &str, known: &[&str]) -> String {
 impl Open<'_> {
     /// Rows of a quantity in SI; NaN where the mapping has none.
     pub fn vector<U: Unit, const N: usize>(&self, name: &str, quantity: &Option<Vector<U>>, sphere: bool) -> Rows<N> {
-        let Some(quantity) = quantity else { return Ok(vec![[f64::NAN; N]; self.table.len()]) };
+        let Some(quantity) = quantity else { return Ok(vec![[f64::NAN; N]; self.table.rows()]) };
         let key = format!("{}.{name}", self.key);
         let Some(source) = quantity.source.as_deref().filter(|&source| source != self.source) else {
             return self.own(&key, self.source, self.table, quantity);
@@ -125,7 +125,7 @@ impl Open<'_> {
     }
 
     fn own<U: Unit, const N: usize>(&self, key: &str, source: &str, table: &Table, quantity: &Vector<U>) -> Rows<N> {
-        let mut rows = vec![[f64::NAN; N]; table.len()];
+        let mut rows = vec![[f64::NAN; N]; table.rows()];
         for (k, field) in quantity.fields.iter().enumerate().take(N) {
             let column = self.reader.column(&format!("{key}.fields"), source, table, signed(field).1)?;
             for (row, &x) in rows.iter_mut().zip(column) {
@@ -136,12 +136,12 @@ impl Open<'_> {
     }
 
     pub fn scalar<U: Unit>(&self, name: &str, quantity: &Option<Scalar<U>>) -> Result<Vec<f64>, Missing> {
-        let Some(quantity) = quantity else { return Ok(vec![f64::NAN; self.table.len()]) };
+        let Some(quantity) = quantity else { return Ok(vec![f64::NAN; self.table.rows()]) };
         let key = format!("{}.{name}", self.key);
         let mut columns = Vec::new();
         for field in quantity.fields() {
             columns.push(self.reader.column(&key, self.source, self.table, signed(field).1)?);
         }
-        Ok((0..self.table.len()).map(|i| quantity.value(columns.iter().map(|column| column[i]))).collect())
+        Ok((0..self.table.rows()).map(|i| quantity.value(columns.iter().map(|column| column[i]))).collect())
     }
 }

@@ -11,7 +11,7 @@ use std::io::{Cursor, Read};
 
 fn prefix(bytes: &[u8]) -> (usize, u64, String) {
     let read = tables(bytes, &|_| true).unwrap();
-    let rows = read.tables.values().map(|table| table.len()).sum();
+    let rows = read.tables.values().map(|table| table.rows()).sum();
     match read.readable {
         Readable::Prefix { bytes: good, of, why } => {
             assert!(good <= of && of == bytes.len() as u64 && !why.is_empty());
@@ -35,7 +35,7 @@ fn every_cut_leaves_a_prefix() {
         }
     }
     let (rows, _, why) = prefix(&whole[..whole.len() - 1]);
-    let all = tables(&whole, &|_| true).unwrap().tables.values().map(|table| table.len()).sum::<usize>();
+    let all = tables(&whole, &|_| true).unwrap().tables.values().map(|table| table.rows()).sum::<usize>();
     assert_eq!(rows, all, "{why}");
     for end in 0..MAGIC.len() {
         assert!(tables(&whole[..end], &|_| true).is_err());
