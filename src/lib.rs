@@ -13,10 +13,10 @@
 //!
 //! The folder `examples/` has a program for each half: `simulate`, `train`, `identify`, `diagnose`.
 //!
-//! World frame ENU with z up, body frame front-left-up, quaternions body to world as (w, x, y, z), SI units and radians;
-//! other units only where a name says so. Commands are roll, pitch and yaw rate and collective thrust, each in [-1, 1], at
-//! 100 Hz. Everything that can fail does so with an [`Error`], whose text says what was expected, what was found, where, and what to
-//! do about it.
+//! World frame ENU with z up, body frame front-left-up, quaternions body to world as (w, x, y, z), SI units and
+//! radians; other units only where a name says so. Commands are roll, pitch and yaw rate and collective thrust, each in
+//! [-1, 1], at 100 Hz. Everything that can fail does so with an [`Error`], whose text says what was expected, what was
+//! found, where, and what to do about it.
 
 #![cfg_attr(not(feature = "internals"), warn(missing_docs))]
 

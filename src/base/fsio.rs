@@ -51,7 +51,8 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a file that the program keeps up to date, all at once, in place of the one it wrote before. Survives a loss of power.
+/// Writes a file that the program keeps up to date, all at once, in place of the one it wrote before. Survives a loss
+/// of power.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = temporary(folder_of(path))?;
     file.write_all(bytes)?;

@@ -5,8 +5,8 @@
 //! one runs is decided once, at run time, by [`dispatch`]. A block type never leaves its `dispatch`, so code for a CPU
 //! that is not there cannot be reached.
 //!
-//! Everything called inside a [`Kernel`] must be `#[inline(always)]`, or wrapped in [`Real::vectorize`]: a function that
-//! is compiled on its own does not know which instructions it may use.
+//! Everything called inside a [`Kernel`] must be `#[inline(always)]`, or wrapped in [`Real::vectorize`]: a function
+//! that is compiled on its own does not know which instructions it may use.
 
 pub mod math;
 mod portable;
@@ -22,8 +22,8 @@ pub use portable::Portable;
 /// Lanes in a block, on every CPU, so that results do not depend on the vector length.
 pub const LANES: usize = 16;
 
-/// `[f(0), f(1), ..]`, as [`std::array::from_fn`], but inlined: a closure over blocks that is called as a function of its own
-/// passes them through memory and does not know which instructions it may use.
+/// `[f(0), f(1), ..]`, as [`std::array::from_fn`], but inlined: a closure over blocks that is called as a function of
+/// its own passes them through memory and does not know which instructions it may use.
 #[inline(always)]
 pub fn build_with<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
     let mut all = [const { MaybeUninit::uninit() }; N];

@@ -24,8 +24,8 @@ impl Kernel for MultiplyAdds {
     }
 }
 
-/// Single-precision operations a second, a multiply-add counted as two, with every thread of the current rayon pool busy
-/// for about `time`; the best of the rounds that fit.
+/// Single-precision operations a second, a multiply-add counted as two, with every thread of the current rayon pool
+/// busy for about `time`; the best of the rounds that fit.
 pub fn flops_per_s(level: Level, time: Duration) -> f64 {
     let work = (ROUNDS * CHAINS * crate::base::lane::LANES * 2) as f64;
     let started = Instant::now();

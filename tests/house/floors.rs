@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::{files, read, top};
 
 /// From the ground up.
-const FLOORS: [&str; 8] = ["base", "model", "learn", "race", "flight", "insight", "present", "cli"];
+const FLOORS: [&str; 9] = ["base", "model", "learn", "race", "flight", "insight", "present", "api", "cli"];
 
 /// A module's path below the crate, such as `["model", "dynamics", "drag"]`.
 type Module = Vec<String>;
