@@ -4,7 +4,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use racer::base::lane::Level;
 use racer::learn::ppo::train::Training;
 use racer::model::constants::CONTROL_S;
-use racer::model::dynamics::{Factors, Parameters, State};
+use racer::model::dynamics::{Craft, Factors, State};
 use racer::model::sim::Batch;
 use racer::race::config::{Config, Setup};
 use racer::race::env::Race;
@@ -19,11 +19,11 @@ fn setup() -> (Config, Race) {
 fn physics(c: &mut Criterion) {
     let (_, race) = setup();
     let state = State::new([0.0; 3], [5.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0; 4], 23.0);
-    let parameters = Parameters::new(&race.vehicle, &Factors::NOMINAL, CONTROL_S);
+    let craft = Craft::new(&race.vehicle, &Factors::NOMINAL, CONTROL_S, state);
     let mut group = c.benchmark_group("physics");
     group.throughput(Throughput::Elements(2048 * 32));
     for level in Level::available() {
-        let mut batch = Batch::new(&vec![(state, parameters); 2048]);
+        let mut batch = Batch::new(&vec![craft.clone(); 2048]);
         let actions = vec![[0.1, -0.1, 0.0, race.hover_command as f32]; 2048];
         group.bench_function(level.to_string(), |b| b.iter(|| batch.advance(level, &actions, 32)));
     }

@@ -134,7 +134,7 @@ impl<'a> Agent<'a> {
         let [x, y, z] = std::array::from_fn(|k| seen.rates[k] / max_rate[k]);
         let command = [x, y, z, self.flight.craft.u];
         let state = State::new(seen.position, seen.velocity, seen.attitude, command, seen.voltage);
-        block.state.set_lane(lane, &state.map(|x| x as f32));
+        block.craft.state.set_lane(lane, &state.map(|x| x as f32));
         block.gate.set_lane(lane, &race.gates[self.target]);
         let in_gate = self.gate(race).locate(seen.position);
         block.in_gate.iter_mut().zip(in_gate).for_each(|(x, p)| x.set(lane, p as f32));

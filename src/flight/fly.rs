@@ -9,7 +9,7 @@ use crate::flight::pilot::{Kind, Limits, Pilot, Seen};
 use crate::flight::sensors::SensorConfig;
 use crate::learn::nn::Network;
 use crate::model::constants::CONTROL_S;
-use crate::model::dynamics::{Factors, Parameters, State};
+use crate::model::dynamics::State;
 use crate::model::thrust::specific_thrust;
 use crate::model::vehicle::Vehicle;
 use crate::race::env::Race;
@@ -39,7 +39,6 @@ const AFTER_S: f64 = 1.0;
 /// The excitation pilot flies `kinds` of manoeuvres, all where none is named, from the ground until it has landed, for at
 /// most `seconds`. It lands early where the battery is empty before.
 pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Kind], seed: u64, seconds: f64) -> Flown {
-    let parameters = Parameters::new(vehicle, &Factors::NOMINAL, CONTROL_S);
     let battery = &vehicle.battery;
     let limits = Limits {
         max_rate_rad_s: vehicle.max_rates_rad_s(),
@@ -49,16 +48,15 @@ pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Kind], seed:
     };
     let mut pilot = Pilot::new(seed, limits).only(kinds);
     let mut recorder = Recorder::new(vehicle, sensors, seed);
-    let mut state = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], battery.full_v);
     recorder.rest(true);
     let mut landed_s = 0.0;
     while recorder.time_s() < seconds - 0.5 * CONTROL_S && landed_s < AFTER_S {
-        let rates = if recorder.resting() { [0.0; 3] } else { state.body_rates(&parameters) };
-        let (position, velocity, attitude, voltage) = (state.position, state.velocity, state.attitude, state.voltage);
+        let rates = if recorder.resting() { [0.0; 3] } else { recorder.craft.body_rates() };
+        let State { position, velocity, attitude, voltage, .. } = recorder.craft.state;
         let seen = Seen { time_s: recorder.time_s(), position, velocity, attitude, rates, voltage };
         let command = pilot.command(&seen);
-        state = recorder.hold(&state, command);
-        settle(&mut state, &mut recorder, &parameters);
+        recorder.hold(command);
+        settle(&mut recorder);
         landed_s = if pilot.landed() { landed_s + CONTROL_S } else { 0.0 };
     }
     recorder.finish(Vec::new(), None)
@@ -77,11 +75,15 @@ pub fn check_pilot(place: &str, seconds: f64) -> Result<(), BadInput> {
 }
 
 /// The ground at height 0: it carries what thrust does not lift, and stops what comes down.
-fn settle(state: &mut State<f64>, recorder: &mut Recorder, parameters: &Parameters<f64>) {
+fn settle(recorder: &mut Recorder) {
+    let resting = recorder.resting();
+    let parameters = recorder.craft.parameters();
+    let state = &recorder.craft.state;
     let lifts = specific_thrust(&parameters.thrust, state.command[3], state.voltage) > parameters.gravity;
-    if recorder.resting() && lifts {
+    if resting && lifts {
         recorder.rest(false);
     } else if state.position[2] < 0.0 && !lifts {
+        let state = &mut recorder.craft.state;
         let [w, _, _, z] = state.attitude;
         // Level, with the heading that it came down with.
         let norm = w.hypot(z).max(1e-9);
@@ -106,8 +108,9 @@ pub fn by_policy(
     let fly = heat::Heat { race, network, first: 0, vehicles: 1, steps, gates: usize::MAX, seen: false };
     let raced = dispatch(level, fly).remove(0);
     let mut recorder = Recorder::new(&race.vehicle, sensors, seed);
-    for (state, command, _) in &raced.steps {
-        recorder.hold(&state.map(f64::from), command.map(f64::from));
+    for (craft, command, _) in &raced.steps {
+        recorder.craft.resume(&craft.map(f64::from));
+        recorder.hold(command.map(f64::from));
     }
     let crossings: Vec<f64> = raced.passes.iter().step_by(race.gates.len()).copied().collect();
     let laps = crossings.windows(2).map(|pair| pair[1] - pair[0]).collect();

@@ -5,6 +5,7 @@
 //! configuration, allocates, or branches on lane data.
 
 pub mod battery;
+pub mod craft;
 pub mod drag;
 pub mod extended;
 pub mod response;
@@ -13,9 +14,9 @@ use crate::base::lane::{Lane, Real, build};
 use crate::model::attitude::{Quaternion, body_axes, compose, dot, normalized, small_rotation};
 use crate::model::thrust;
 use crate::model::vehicle::Vehicle;
-use extended::{Beyond, Memory};
 
 pub use crate::model::vehicle::randomize::Factors;
+pub use craft::Craft;
 
 /// State of one vehicle (paper Eq. 5). Body rates are not kept: they are `command * max_rate`.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +31,6 @@ pub struct State<R> {
     pub command: [R; 4],
     /// Battery voltage without load, V.
     pub voltage: R,
-    /// What only effects beyond the compact model need.
-    pub memory: Memory<R>,
 }
 
 /// The model's numbers as one step needs them. Forces are divided by the mass.
@@ -53,8 +52,6 @@ pub struct Parameters<R> {
     pub gravity: R,
     /// Battery voltage rate, V/s, negative.
     pub voltage_rate: R,
-    /// Effects beyond the compact model, and what they need.
-    pub beyond: Beyond<R>,
 }
 
 impl Parameters<f64> {
@@ -66,7 +63,6 @@ impl Parameters<f64> {
             1.0 - tau[i] * factors.time_constant[i] / dt * response::alpha(tau[i] * factors.time_constant[i], dt)
         });
         let max_rate = vehicle.max_rates_rad_s();
-        let effects = vehicle.effects.drawn(&factors.effects);
         Parameters {
             dt,
             alpha,
@@ -76,14 +72,12 @@ impl Parameters<f64> {
             drag: drag::ellipsoid(&vehicle.drag).map(|k| k * factors.drag / vehicle.mass_kg),
             gravity: vehicle.gravity_m_s2,
             voltage_rate: vehicle.battery.rate_v_s,
-            beyond: Beyond::new(vehicle, build!(|i| tau[i] * factors.time_constant[i]), effects, dt),
         }
     }
 }
 
 impl State<f64> {
-    /// At the beginning of a flight whose commands were held at `command` before: position (m) and velocity (m/s) in the world,
-    /// attitude, voltage (V).
+    /// Position (m) and velocity (m/s) in the world, attitude, filtered commands, voltage (V).
     pub fn new(
         position: [f64; 3],
         velocity: [f64; 3],
@@ -91,7 +85,7 @@ impl State<f64> {
         command: [f64; 4],
         voltage: f64,
     ) -> Self {
-        State { position, velocity, attitude, command, voltage, memory: Memory::before(command) }
+        State { position, velocity, attitude, command, voltage }
     }
 }
 
@@ -105,7 +99,6 @@ impl<R: Copy> State<R> {
             attitude: self.attitude.map(&mut f),
             command: self.command.map(&mut f),
             voltage: f(self.voltage),
-            memory: self.memory.map(f),
         }
     }
 }
@@ -123,7 +116,6 @@ impl<R: Copy> Parameters<R> {
             drag: self.drag.map(&mut f),
             gravity: f(self.gravity),
             voltage_rate: f(self.voltage_rate),
-            beyond: self.beyond.map(f),
         }
     }
 }
@@ -131,10 +123,9 @@ impl<R: Copy> Parameters<R> {
 impl<L: Lane> State<L> {
     /// Replaces the state of one lane.
     pub fn set_lane(&mut self, lane: usize, new: &State<L::Elem>) {
-        self.memory.set_lane(lane, &new.memory);
-        let State { position, velocity, attitude, command, voltage, .. } = self;
+        let State { position, velocity, attitude, command, voltage } = self;
         let own = position.iter_mut().chain(velocity).chain(attitude).chain(command).chain([voltage]);
-        let State { position, velocity, attitude, command, voltage, .. } = new;
+        let State { position, velocity, attitude, command, voltage } = new;
         let new = position.iter().chain(velocity).chain(attitude).chain(command).chain([voltage]);
         own.zip(new).for_each(|(own, &new)| own.set(lane, new));
     }
@@ -143,11 +134,10 @@ impl<L: Lane> State<L> {
 impl<L: Lane> Parameters<L> {
     /// Replaces the parameters of one lane.
     pub fn set_lane(&mut self, lane: usize, new: &Parameters<L::Elem>) {
-        self.beyond.set_lane(lane, &new.beyond);
-        let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate, .. } = self;
+        let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate } = self;
         let own = alpha.iter_mut().chain(mean_alpha).chain(max_rate).chain(thrust).chain(drag);
         let own = own.chain([dt, gravity, voltage_rate]);
-        let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate, .. } = new;
+        let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate } = new;
         let new = alpha.iter().chain(mean_alpha).chain(max_rate).chain(thrust).chain(drag);
         own.zip(new.chain([dt, gravity, voltage_rate])).for_each(|(own, &new)| own.set(lane, new));
     }
@@ -157,19 +147,7 @@ impl<R: Real> State<R> {
     /// Body rates, rad/s, body frame.
     #[inline(always)]
     pub fn body_rates(&self, p: &Parameters<R>) -> [R; 3] {
-        if p.beyond.values.any() {
-            return extended::body_rates(p, self.command);
-        }
         build!(|i| self.command[i] * p.max_rate[i])
-    }
-
-    /// Voltage at the battery's terminals, V.
-    #[inline(always)]
-    pub fn terminal_voltage(&self, p: &Parameters<R>) -> R {
-        if p.beyond.values.any() {
-            return extended::terminal(p, self.voltage, self.command[3], self.memory.polarisation, R::zero()).0;
-        }
-        self.voltage
     }
 }
 
@@ -178,9 +156,6 @@ impl<R: Real> State<R> {
 pub fn specific_force<R: Real>(s: &State<R>, p: &Parameters<R>) -> [R; 3] {
     let axes = body_axes(s.attitude);
     let velocity = build!(|i| dot(axes[i], s.velocity));
-    if p.beyond.values.any() {
-        return extended::force(p, &extended::ForceInputs::of(s, p, axes, velocity));
-    }
     force_in_body(&p.thrust, &p.drag, s.command[3], s.voltage, velocity)
 }
 
@@ -193,16 +168,13 @@ pub fn force_in_body<R: Real>(thrust: &[R; 6], drag: &[R; 3], command: R, voltag
     [x, y, z + thrust::specific_thrust(thrust, command, voltage)]
 }
 
-/// One step under the held command `action`.
+/// One step of `p.dt` seconds under the held command `action`.
 ///
 /// The response is integrated exactly, the attitude with the step's mean rate, and the acceleration is taken at the
 /// step's middle: half the rotation done, mean thrust command, mid-step voltage and velocity. At 100 Hz the time
 /// constants are as short as the step, and a plain Euler step would be twenty times worse.
 #[inline(always)]
-pub fn step<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R> {
-    if p.beyond.values.any() {
-        return extended::step(s, p, action);
-    }
+pub fn step<R: Real>(s: &mut State<R>, p: &Parameters<R>, action: [R; 4]) {
     let half_dt = p.dt * R::of(0.5);
     let mean: [R; 4] = build!(|i| response::toward(s.command[i], action[i], p.mean_alpha[i]));
     let command = build!(|i| response::toward(s.command[i], action[i], p.alpha[i]));
@@ -225,5 +197,5 @@ pub fn step<R: Real>(s: &State<R>, p: &Parameters<R>, action: [R; 4]) -> State<R
     let velocity: [R; 3] = build!(|i| acceleration[i].mul_add(p.dt, s.velocity[i]));
     let position = build!(|i| (s.velocity[i] + velocity[i]).mul_add(half_dt, s.position[i]));
     let voltage = battery::discharged(voltage, p.voltage_rate, half_dt);
-    State { position, velocity, attitude, command, voltage, memory: s.memory }
+    *s = State { position, velocity, attitude, command, voltage };
 }

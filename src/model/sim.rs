@@ -1,47 +1,64 @@
 //! A batch of vehicles without a race: struct of arrays in blocks of 16, on all cores.
 
 use crate::base::lane::{Kernel, LANES, Lane, Lane32, Level, Portable, build, dispatch};
-use crate::model::dynamics::{Parameters, State, step};
+use crate::model::dynamics::{Craft, State};
 use rayon::prelude::*;
 
 /// How a block rests in memory.
 type Rest = Portable<f32>;
 
-/// Vehicles side by side. The last block is filled up with copies of the last vehicle, which are never shown.
+/// Vehicles side by side, in blocks of those that obey the same kind of equations.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    vehicles: usize,
-    blocks: Vec<(State<Rest>, Parameters<Rest>)>,
+    blocks: Vec<Block>,
+    /// Block and lane of each vehicle.
+    places: Vec<(usize, usize)>,
+}
+
+#[derive(Clone, Debug)]
+struct Block {
+    craft: Craft<Rest>,
+    /// Which vehicle is in each lane. Lanes that are left over repeat the last one, and are never shown.
+    vehicles: [usize; LANES],
 }
 
 impl Batch {
-    /// A batch of `vehicles` states and parameters.
-    pub fn new(vehicles: &[(State<f64>, Parameters<f64>)]) -> Self {
-        let block = |chunk: &[(State<f64>, Parameters<f64>)]| {
-            let (state, parameters) = &chunk[0];
-            let mut block = (state.map(|x| Rest::splat(x as f32)), parameters.map(|x| Rest::splat(x as f32)));
-            for lane in 0..LANES {
-                let (state, parameters) = &chunk[lane.min(chunk.len() - 1)];
-                block.0.set_lane(lane, &state.map(|x| x as f32));
-                block.1.set_lane(lane, &parameters.map(|x| x as f32));
-            }
-            block
+    /// A batch of `vehicles`, which keep their order.
+    pub fn new(vehicles: &[Craft<f64>]) -> Self {
+        let (extended, compact): (Vec<usize>, Vec<usize>) =
+            (0..vehicles.len()).partition(|&i| vehicles[i].is_extended());
+        let members: Vec<_> = compact.chunks(LANES).chain(extended.chunks(LANES)).collect();
+        let mut places = vec![(0, 0); vehicles.len()];
+        for (block, members) in members.iter().enumerate() {
+            members.iter().enumerate().for_each(|(lane, &i)| places[i] = (block, lane));
+        }
+        let block = |members: &&[usize]| {
+            let indices: [usize; LANES] = std::array::from_fn(|lane| members[lane.min(members.len() - 1)]);
+            let mut craft = vehicles[indices[0]].map(|x| Rest::splat(x as f32));
+            indices.iter().enumerate().for_each(|(lane, &i)| craft.set_lane(lane, &vehicles[i].map(|x| x as f32)));
+            Block { craft, vehicles: indices }
         };
-        Batch { vehicles: vehicles.len(), blocks: vehicles.chunks(LANES).map(block).collect() }
+        Batch { blocks: members.iter().map(block).collect(), places }
     }
 
     pub fn len(&self) -> usize {
-        self.vehicles
+        self.places.len()
     }
 
     pub fn is_empty(&self) -> bool {
-        self.vehicles == 0
+        self.places.is_empty()
     }
 
     /// State of vehicle `i`.
     pub fn state(&self, i: usize) -> State<f32> {
-        assert!(i < self.vehicles);
-        self.blocks[i / LANES].0.map(|x| x.get(i % LANES))
+        let (block, lane) = self.places[i];
+        self.blocks[block].craft.state.map(|x| x.get(lane))
+    }
+
+    /// Vehicle `i` with all that moves it.
+    pub fn craft(&self, i: usize) -> Craft<f32> {
+        let (block, lane) = self.places[i];
+        self.blocks[block].craft.map(|x| x.get(lane))
     }
 
     /// Flies `steps` steps with the commands `actions[i]` of vehicle `i` held, on the current rayon pool.
@@ -49,15 +66,13 @@ impl Batch {
     /// # Panics
     /// If there is not one action for each vehicle.
     pub fn advance(&mut self, level: Level, actions: &[[f32; 4]], steps: usize) {
-        assert_eq!(actions.len(), self.vehicles, "one action for each vehicle");
-        self.blocks.par_iter_mut().zip(actions.par_chunks(LANES)).for_each(|(block, actions)| {
-            dispatch(level, Advance { block, actions, steps });
-        });
+        assert_eq!(actions.len(), self.len(), "one action for each vehicle");
+        self.blocks.par_iter_mut().for_each(|block| dispatch(level, Advance { block, actions, steps }));
     }
 }
 
 struct Advance<'a> {
-    block: &'a mut (State<Rest>, Parameters<Rest>),
+    block: &'a mut Block,
     actions: &'a [[f32; 4]],
     steps: usize,
 }
@@ -66,14 +81,10 @@ impl Kernel for Advance<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lane32>(self) {
-        let (state, parameters) = self.block;
-        let lane = |lane: usize| self.actions[lane.min(self.actions.len() - 1)];
-        let action = build!(|k| L::from_array(build!(|i| lane(i)[k])));
-        let parameters = parameters.map(|x| L::from_array(x.0));
-        let mut flying = state.map(|x| L::from_array(x.0));
-        for _ in 0..self.steps {
-            flying = step(&flying, &parameters, action);
-        }
-        *state = flying.map(|x| Portable(x.to_array()));
+        let Advance { block, actions, steps } = self;
+        let action = build!(|k| L::from_array(build!(|lane| actions[block.vehicles[lane]][k])));
+        let mut craft = block.craft.map(|x| L::from_array(x.0));
+        craft.advance(action, steps);
+        block.craft = craft.map(|x| Portable(x.to_array()));
     }
 }

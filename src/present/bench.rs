@@ -9,7 +9,7 @@ use crate::learn::policy::ACTIONS;
 use crate::learn::ppo::Environment;
 use crate::learn::ppo::train::Training;
 use crate::model::constants::CONTROL_S;
-use crate::model::dynamics::{Factors, Parameters, State};
+use crate::model::dynamics::{Craft, Factors, State};
 use crate::model::sim::Batch;
 use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
@@ -122,8 +122,8 @@ fn best<T>(time: Duration, mut work: impl FnMut() -> T) -> f64 {
 fn physics(race: &Race, level: Level, threads: usize, steps: usize, time: Duration) -> f64 {
     let n = 2048 * threads;
     let start = State::new([0.0; 3], [5.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0; 4], race.vehicle.battery.full_v);
-    let parameters = Parameters::new(&race.vehicle, &Factors::NOMINAL, CONTROL_S);
-    let mut batch = Batch::new(&vec![(start, parameters); n]);
+    let craft = Craft::new(&race.vehicle, &Factors::NOMINAL, CONTROL_S, start);
+    let mut batch = Batch::new(&vec![craft; n]);
     let actions: Vec<_> = (0..n).map(|i| [0.1, -0.1, 0.01 * (i % 10) as f32, race.hover_command as f32]).collect();
     (n * steps) as f64 / best(time, || batch.advance(level, &actions, steps))
 }

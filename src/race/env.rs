@@ -14,7 +14,7 @@ use crate::base::lane::{Bits, LANES, Lane, Lane32, Mask, build, each, sum_of_squ
 use crate::base::rng::Philox;
 use crate::model::attitude::{body_axes, dot};
 use crate::model::constants::CONTROL_S;
-use crate::model::dynamics::{self, Factors, Parameters, State};
+use crate::model::dynamics::{Craft, Factors, State};
 use crate::model::track::{Pose, Track};
 use crate::model::vehicle::Vehicle;
 use crate::model::vehicle::randomize::RandomizeConfig;
@@ -89,10 +89,9 @@ pub struct LapPoint {
 }
 
 /// 16 episodes side by side. `Block<Portable<f32>>` is how they rest in memory between rollouts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Block<R> {
-    pub state: State<R>,
-    pub parameters: Parameters<R>,
+    pub craft: Craft<R>,
     /// The target gate of each lane.
     pub gate: GateFrame<R>,
     /// The last three actions as the policy gave them, newest first.
@@ -172,8 +171,7 @@ impl Race {
     pub fn empty_block<L: Lane32>(&self, first: u32) -> Block<L> {
         let state = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], [0.0; 4], self.vehicle.battery.full_v);
         Block {
-            state: state.map(L::of),
-            parameters: Parameters::new(&self.vehicle, &Factors::NOMINAL, self.dt).map(L::of),
+            craft: Craft::new(&self.vehicle, &Factors::NOMINAL, self.dt, state).map(L::of),
             gate: self.gates[0].map(L::splat),
             history: [[L::zero(); 4]; 3],
             in_gate: [L::zero(); 3],
@@ -197,8 +195,7 @@ impl<R: Copy> Block<R> {
     #[inline(always)]
     pub fn map<S>(&self, mut f: impl FnMut(R) -> S) -> Block<S> {
         Block {
-            state: self.state.map(&mut f),
-            parameters: self.parameters.map(&mut f),
+            craft: self.craft.map(&mut f),
             gate: self.gate.map(&mut f),
             history: self.history.map(|a| a.map(&mut f)),
             in_gate: self.in_gate.map(&mut f),
@@ -245,15 +242,16 @@ impl<L: Lane32> Block<L> {
             action
         };
         let before = self.in_gate;
-        self.state = dynamics::step(&self.state, &self.parameters, applied);
-        let after = self.gate.locate(self.state.position);
+        self.craft.step(applied);
+        let state = &self.craft.state;
+        let after = self.gate.locate(state.position);
         let crossing = gates::crossing(before, after, self.gate.radius);
         self.clock = self.clock + L::one();
         self.gate_clock = L::select(crossing.passed, L::zero(), self.gate_clock + L::one());
         let timed_out = L::of(config.gate_timeout_s / race.dt).le(self.gate_clock);
 
         let distance = each!([before, after], |v| sum_of_squares(v).sqrt());
-        let forward = self.gate.rotate(body_axes(self.state.attitude)[0]);
+        let forward = self.gate.rotate(body_axes(state.attitude)[0]);
         let change: [L; 4] = build!(|i| action[i] - self.history[0][i]);
         let terms = reward::terms(
             &config.reward,
@@ -261,7 +259,7 @@ impl<L: Lane32> Block<L> {
                 distance,
                 passed: crossing.passed,
                 timed_out,
-                height: self.state.position[2],
+                height: state.position[2],
                 facing: -dot(forward, after) / distance[1].max(L::of(1e-3)),
                 action_change: sum_of_squares(change),
             },
@@ -289,10 +287,9 @@ impl<L: Lane32> Block<L> {
 
     /// Begins a new episode in `lane`.
     pub fn begin(&mut self, race: &Race, lane: usize, start: &Start) {
-        self.state.set_lane(lane, &start.state.map(|x| x as f32));
-        self.parameters.set_lane(lane, &start.parameters.map(|x| x as f32));
+        self.craft.set_lane(lane, &start.craft.map(|x| x as f32));
         for action in &mut self.history {
-            action.iter_mut().zip(start.state.command).for_each(|(x, u)| x.set(lane, u as f32));
+            action.iter_mut().zip(start.craft.state.command).for_each(|(x, u)| x.set(lane, u as f32));
         }
         for count in [&mut self.clock, &mut self.gate_clock, &mut self.gathered] {
             count.set(lane, 0.0);
@@ -307,7 +304,7 @@ impl<L: Lane32> Block<L> {
         let gate = &race.gates[index];
         self.target[lane] = index as u32;
         self.gate.set_lane(lane, gate);
-        let position = gate.locate(self.state.position.map(|x| x.get(lane)));
+        let position = gate.locate(self.craft.state.position.map(|x| x.get(lane)));
         self.in_gate.iter_mut().zip(position).for_each(|(x, p)| x.set(lane, p));
     }
 }

@@ -4,7 +4,7 @@ use crate::base::lane::{Kernel, LANES, Lane32, build};
 use crate::base::rng::Stream;
 use crate::learn::nn::{Network, TILE_SAMPLES};
 use crate::learn::policy::ACTIONS;
-use crate::model::dynamics::{Factors, Parameters, State};
+use crate::model::dynamics::{Craft, Factors};
 use crate::race::env::observe::OBSERVATIONS;
 use crate::race::env::reset::{self, Place};
 use crate::race::env::terminate::CAUSES;
@@ -29,9 +29,8 @@ pub struct Heat<'a> {
 
 /// One vehicle's race.
 pub struct Raced {
-    pub parameters: Parameters<f32>,
-    /// State at the beginning of each step, the command that was held through it, and the gate it flew to.
-    pub steps: Vec<(State<f32>, [f32; ACTIONS], u32)>,
+    /// The vehicle at the beginning of each step, the command that was held through it, and the gate it flew to.
+    pub steps: Vec<(Craft<f32>, [f32; ACTIONS], u32)>,
     /// What the policy saw at the beginning of each step, if that was asked for.
     pub seen: Vec<[f32; OBSERVATIONS]>,
     /// When each gate was passed, in order, s, interpolated within the step.
@@ -54,8 +53,7 @@ impl Kernel for Heat<'_> {
             let mut rng = race.rng.sequence(Stream::Evaluation, vehicle as u32, 0);
             let start = reset::draw(race, &mut rng, Place::Pad, (vehicle == 0).then_some(Factors::NOMINAL));
             block.begin(race, lane, &start);
-            let parameters = start.parameters.map(|x| x as f32);
-            out.push(Raced { parameters, steps: Vec::new(), seen: Vec::new(), passes: Vec::new(), failure: None });
+            out.push(Raced { steps: Vec::new(), seen: Vec::new(), passes: Vec::new(), failure: None });
         }
         out.truncate(vehicles);
         let mut seen = vec![0.0f32; OBSERVATIONS * TILE_SAMPLES];
@@ -70,8 +68,8 @@ impl Kernel for Heat<'_> {
             let action: [L; ACTIONS] = build!(|k| L::from_slice(&mean[k * TILE_SAMPLES..]).tanh());
             for (lane, raced) in out.iter_mut().enumerate() {
                 if !over(raced, gates) {
-                    let state = block.state.map(|x| x.get(lane));
-                    raced.steps.push((state, action.map(|x| x.get(lane)), block.target[lane]));
+                    let craft = block.craft.map(|x| x.get(lane));
+                    raced.steps.push((craft, action.map(|x| x.get(lane)), block.target[lane]));
                     if keep {
                         raced.seen.push(std::array::from_fn(|k| seen[k * TILE_SAMPLES + lane]));
                     }

@@ -1,7 +1,7 @@
 //! The compact model against the continuous-time reference, physical laws, and itself in other precisions.
 
 use racer::base::lane::{Kernel, Lane32, Level, dispatch};
-use racer::model::dynamics::{Factors, Parameters, State, step};
+use racer::model::dynamics::{Craft, Factors, Parameters, State, step};
 use racer::model::sim::Batch;
 use racer::model::vehicle::Vehicle;
 use serde_json::Value;
@@ -31,7 +31,7 @@ fn errors(n: usize) -> [f64; 4] {
     let parameters = Parameters::new(&vehicle, &Factors::NOMINAL, 0.01);
     let mut s = state(numbers(&golden["initial"]));
     for k in 0..n {
-        s = step(&s, &parameters, numbers(&golden["commands"][k]));
+        step(&mut s, &parameters, numbers(&golden["commands"][k]));
     }
     let want = state(numbers(&golden["states"][n]));
     [
@@ -78,7 +78,7 @@ fn free_fall() {
     let mut s = level_at_rest(24.0);
     s.velocity = [3.0, -2.0, 5.0];
     for k in 0..100 {
-        s = step(&s, &parameters, [(k as f64 * 0.3).sin(), 0.7, -0.2, 1.0]);
+        step(&mut s, &parameters, [(k as f64 * 0.3).sin(), 0.7, -0.2, 1.0]);
     }
     let g = parameters.gravity;
     assert!(distance(s.position, [3.0, -2.0, 10.0 + 5.0 - 0.5 * g]) < 1e-10, "{:?}", s.position);
@@ -95,7 +95,7 @@ fn hover() {
     let mut s = level_at_rest(23.0);
     s.command[3] = command;
     for _ in 0..500 {
-        s = step(&s, &parameters, [0.0, 0.0, 0.0, command]);
+        step(&mut s, &parameters, [0.0, 0.0, 0.0, command]);
     }
     assert!(distance(s.position, [0.0, 0.0, 10.0]) < 1e-9 && distance(s.velocity, [0.0; 3]) < 1e-9, "{s:?}");
 }
@@ -113,7 +113,7 @@ fn terminal_velocity() {
         let mut s = level_at_rest(24.0);
         s.attitude = attitude;
         for _ in 0..6000 {
-            s = step(&s, &parameters, [0.0; 4]);
+            step(&mut s, &parameters, [0.0; 4]);
         }
         let k = 0.5 * vehicle.drag.air_density_kg_m3 * vehicle.drag.coefficient * std::f64::consts::PI * area;
         let v = (vehicle.mass_kg * vehicle.gravity_m_s2 / k).sqrt();
@@ -132,9 +132,9 @@ fn drag_takes_energy() {
     s.velocity = [15.0, -8.0, 12.0];
     let energy = |s: &State<f64>| 0.5 * distance(s.velocity, [0.0; 3]).powi(2) + parameters.gravity * s.position[2];
     for k in 0..300 {
-        let next = step(&s, &parameters, [(0.1 * k as f64).sin(), 0.8, -0.5, 0.0]);
-        assert!(energy(&next) < energy(&s), "step {k}");
-        s = next;
+        let before = energy(&s);
+        step(&mut s, &parameters, [(0.1 * k as f64).sin(), 0.8, -0.5, 0.0]);
+        assert!(energy(&s) < before, "step {k}");
     }
 }
 
@@ -146,7 +146,7 @@ fn exact_step_response() {
     let parameters = Parameters::new(&vehicle, &Factors::NOMINAL, DT);
     let mut s = level_at_rest(24.0);
     for k in 1..=30 {
-        s = step(&s, &parameters, [0.5, 0.0, 0.0, 1.0]);
+        step(&mut s, &parameters, [0.5, 0.0, 0.0, 1.0]);
         let t = k as f64 * DT;
         let follow = |i: usize| 1.0 - (-t / vehicle.time_constants()[i]).exp();
         assert!((s.command[0] - 0.5 * follow(0)).abs() < 1e-12 && (s.command[3] - follow(3)).abs() < 1e-12);
@@ -165,7 +165,7 @@ fn quaternion_norm() {
     let mut s = level_at_rest(24.0).map(|x| x as f32);
     for k in 0..60_000 {
         let sign = if k / 37 % 2 == 0 { 1.0 } else { -1.0 };
-        s = step(&s, &parameters, [1.0, sign, -1.0, 0.0]);
+        step(&mut s, &parameters, [1.0, sign, -1.0, 0.0]);
         let norm = s.attitude.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
         assert!((norm - 1.0).abs() < 5e-7, "step {k}: {norm}");
     }
@@ -197,7 +197,7 @@ impl Kernel for Fly {
         let parameters = Parameters::new(&vehicle(), &Factors::NOMINAL, DT).map(L::of);
         let mut s = self.start.map(L::of);
         for k in 0..self.steps {
-            s = step(&s, &parameters, command(k).map(L::of));
+            step(&mut s, &parameters, command(k).map(L::of));
         }
         L::FUSES.then(|| (0..16).map(|i| s.map(|x| x.get(i))).collect())
     }
@@ -215,7 +215,7 @@ fn scalar_is_simd_bit_for_bit() {
     let parameters = Parameters::new(&vehicle(), &Factors::NOMINAL, DT).map(|x| x as f32);
     let mut s = start.map(|x| x as f32);
     for k in 0..300 {
-        s = step(&s, &parameters, command(k).map(|x| x as f32));
+        step(&mut s, &parameters, command(k).map(|x| x as f32));
     }
     let bits = |s: &State<f32>| {
         let mut bits = Vec::new();
@@ -235,7 +235,7 @@ fn a_batch_is_its_vehicles() {
     let vehicles: Vec<_> = (0..37)
         .map(|i| {
             let factors = Factors { thrust: 0.8 + 0.01 * i as f64, ..Factors::NOMINAL };
-            (level_at_rest(23.0 + 0.01 * i as f64), Parameters::new(&vehicle(), &factors, DT))
+            Craft::new(&vehicle(), &factors, DT, level_at_rest(23.0 + 0.01 * i as f64))
         })
         .collect();
     let actions: Vec<_> = (0..37).map(|i| [0.01 * i as f32, -0.2, 0.1, 0.3]).collect();

@@ -2,7 +2,7 @@
 
 use racer::base::lane::{LANES, Lane, Portable};
 use racer::base::rng::{Philox, Stream};
-use racer::model::dynamics::{Factors, State};
+use racer::model::dynamics::{Craft, Factors, State};
 use racer::model::track::Track;
 use racer::model::vehicle::Vehicle;
 use racer::race::config::Config;
@@ -26,12 +26,14 @@ fn race(settings: &str) -> (Race, Track) {
 
 /// A block whose lanes all start at `position` with `velocity`, level and facing west, flying to `target`.
 fn block(race: &Race, position: [f64; 3], velocity: [f64; 3], target: usize) -> Block<L> {
-    let parameters =
-        racer::model::dynamics::Parameters::new(&race.vehicle, &Factors::NOMINAL, racer::model::constants::CONTROL_S);
     let command = [0.0, 0.0, 0.0, race.hover_command];
     let state = State::new(position, velocity, [0.0, 0.0, 0.0, 1.0], command, 23.5);
+    let start = Start {
+        craft: Craft::new(&race.vehicle, &Factors::NOMINAL, racer::model::constants::CONTROL_S, state),
+        target,
+    };
     let mut block = race.empty_block(0);
-    (0..LANES).for_each(|lane| block.begin(race, lane, &Start { state, parameters, target }));
+    (0..LANES).for_each(|lane| block.begin(race, lane, &start));
     block
 }
 
@@ -103,9 +105,9 @@ fn causes_of_termination() {
     assert_eq!(cause("", [1e3, 2.0, 1.5], still, |_| {}), ["left_volume"]);
     assert_eq!(cause("", [15.0, 2.0, -1.0], still, |_| {}), ["altitude"]);
     assert_eq!(cause("", [15.0, 2.0, 100.0], still, |_| {}), ["altitude"]);
-    assert_eq!(cause("", [15.0, 2.0, 1.5], still, |b| b.state.voltage = L::splat(21.9)), ["battery"]);
+    assert_eq!(cause("", [15.0, 2.0, 1.5], still, |b| b.craft.state.voltage = L::splat(21.9)), ["battery"]);
     assert_eq!(cause("", [15.0, 2.0, 1.5], still, |b| b.gate_clock = L::splat(399.0)), ["gate_timeout"]);
-    assert_eq!(cause("", [15.0, 2.0, 1.5], still, |b| b.state.velocity[1] = L::splat(f32::NAN)), ["non_finite"]);
+    assert_eq!(cause("", [15.0, 2.0, 1.5], still, |b| b.craft.state.velocity[1] = L::splat(f32::NAN)), ["non_finite"]);
 }
 
 /// At the horizon an episode that could have gone on is truncated; one that ended in the same step is terminated.
@@ -114,7 +116,7 @@ fn the_horizon_truncates() {
     let (race, _) = race("env.horizon_steps=50");
     let mut block = block(&race, [15.0, 2.0, 1.5], [0.0; 3], 0);
     block.clock = L::splat(49.0);
-    block.state.position[2].set(5, -1.0);
+    block.craft.state.position[2].set(5, -1.0);
     let outcome = block.step(&race, hover(&race));
     assert_eq!((outcome.truncated, outcome.terminated), (0xffff & !(1 << 5), 1 << 5));
 }
@@ -146,19 +148,19 @@ fn starts() {
     let rng = Philox::new(3);
     for i in 0..5000 {
         let start = reset::draw(&race, &mut rng.sequence(Stream::Reset, i, 0), Place::Spline, None);
-        let p: nalgebra::Vector3<f64> = start.state.position.into();
+        let p: nalgebra::Vector3<f64> = start.craft.state.position.into();
         assert!(track.volume.contains(&p), "{p}");
         let gate = &track.gates[start.target];
         let seen = gate.rotation().transpose() * (p - gate.position());
         assert!(seen.x <= 0.0 || seen.norm() > 1.0, "start {i}, gate {}: {seen}", start.target);
-        let norm = start.state.attitude.iter().map(|x| x * x).sum::<f64>();
+        let norm = start.craft.state.attitude.iter().map(|x| x * x).sum::<f64>();
         assert!((norm - 1.0).abs() < 1e-12);
-        let speed = start.state.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let speed = start.craft.state.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
         assert!(speed <= race.config.reset.speed_m_s[1]);
-        assert!((22.2..24.0).contains(&start.state.voltage));
+        assert!((22.2..24.0).contains(&start.craft.state.voltage));
     }
     let pad = reset::draw(&race, &mut rng.sequence(Stream::Reset, 0, 0), Place::Pad, Some(Factors::NOMINAL));
-    assert_eq!((pad.state.position, pad.target, pad.state.voltage), (track.start.position_m, 0, 24.0));
+    assert_eq!((pad.craft.state.position, pad.target, pad.craft.state.voltage), (track.start.position_m, 0, 24.0));
 }
 
 /// Each factor stays in its range, fills it, and none follows another.

@@ -109,7 +109,7 @@ fn the_crates_model_agrees() {
             let phase = f64::from(k / 20 * 20);
             let command = [(0.013 * phase).sin(), (0.008 * phase).cos(), (0.003 * phase).sin(), 0.3];
             state = integrate::step(&state, &vehicle, command, DT);
-            own = dynamics::step(&own, &parameters, command);
+            dynamics::step(&mut own, &parameters, command);
         }
         let [w, i, j, k] = own.attitude;
         let turned = UnitQuaternion::from_quaternion(Quaternion::new(w, i, j, k)).angle_to(&state.rotation());

@@ -6,13 +6,14 @@ use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Stream, VehicleRecord};
 use crate::model::attitude::{body_axes, compose, dot, normalized, small_rotation};
 use crate::model::constants::CONTROL_S;
-use crate::model::dynamics::{Factors, Parameters, State, specific_force, step};
+use crate::model::dynamics::{Craft, Factors, State};
 use crate::model::vehicle::Vehicle;
 
 /// Records a flight, control step by control step.
 pub struct Recorder<'a> {
     sensors: &'a SensorConfig,
-    parameters: Parameters<f64>,
+    /// The vehicle, at rest at the origin to begin with, in steps of the IMU.
+    pub craft: Craft<f64>,
     /// Steps of the IMU in a control step.
     fine_steps: usize,
     controls: usize,
@@ -51,9 +52,11 @@ impl<'a> Recorder<'a> {
         };
         let [imu, odometry, battery] = sequences;
         let record = VehicleRecord { mass_kg: Some(vehicle.mass_kg), max_rate_rad_s: Some(vehicle.max_rates_rad_s()) };
+        let voltage = vehicle.battery.full_v;
+        let state = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], voltage);
         Recorder {
             sensors,
-            parameters: Parameters::new(vehicle, &Factors::NOMINAL, CONTROL_S / fine_steps as f64),
+            craft: Craft::new(vehicle, &Factors::NOMINAL, CONTROL_S / fine_steps as f64, state),
             fine_steps,
             controls: 0,
             resting: false,
@@ -81,32 +84,30 @@ impl<'a> Recorder<'a> {
         self.resting = resting;
     }
 
-    /// Records 10 ms from `state` with `command` held, and returns the state after them.
-    pub fn hold(&mut self, state: &State<f64>, command: [f64; 4]) -> State<f64> {
-        let max = self.parameters.max_rate;
+    /// Flies and records 10 ms with `command` held.
+    pub fn hold(&mut self, command: [f64; 4]) {
+        let max = self.craft.parameters().max_rate;
         let [roll, pitch, yaw, thrust] = command;
         let row = [roll * max[0], pitch * max[1], yaw * max[2], 0.5 + 0.5 * thrust];
         self.log.setpoint.push(self.time_s(), row);
-        let mut state = *state;
         for k in 0..self.fine_steps {
-            self.sense(self.time_s() + k as f64 * self.parameters.dt, &state);
-            let next = step(&state, &self.parameters, command);
-            state = if self.resting {
-                State { position: state.position, velocity: [0.0; 3], attitude: state.attitude, ..next }
-            } else {
-                next
-            };
+            self.sense(self.time_s() + k as f64 * self.craft.parameters().dt);
+            let State { position, attitude, .. } = self.craft.state;
+            self.craft.step(command);
+            if self.resting {
+                self.craft.state = State { position, velocity: [0.0; 3], attitude, ..self.craft.state };
+            }
         }
         self.controls += 1;
-        state
     }
 
-    fn sense(&mut self, time_s: f64, state: &State<f64>) {
+    fn sense(&mut self, time_s: f64) {
         let SensorConfig { imu, odometry, battery } = self.sensors;
+        let (craft, state) = (&self.craft, &self.craft.state);
         let (rates, force) = if self.resting {
-            ([0.0; 3], body_axes(state.attitude).map(|axis| axis[2] * self.parameters.gravity))
+            ([0.0; 3], body_axes(state.attitude).map(|axis| axis[2] * craft.parameters().gravity))
         } else {
-            (state.body_rates(&self.parameters), specific_force(state, &self.parameters))
+            (craft.body_rates(), craft.specific_force())
         };
         let [p, q, r] = imu.gyro.read(rates, self.bias.gyro, &mut self.imu);
         let [x, y, z] = imu.specific_force.read(force, self.bias.specific_force, &mut self.imu);
@@ -122,8 +123,7 @@ impl<'a> Recorder<'a> {
             self.log.odometry.push(time_s, [x, y, z, qw, qx, qy, qz, u, v, w]);
         }
         if due(&self.log.battery, battery.rate_hz, time_s) {
-            let [voltage] =
-                battery.voltage.read([state.terminal_voltage(&self.parameters)], self.bias.voltage, &mut self.battery);
+            let [voltage] = battery.voltage.read([craft.terminal_voltage()], self.bias.voltage, &mut self.battery);
             self.log.battery.push(time_s, [voltage, f64::NAN]);
         }
     }

@@ -2,8 +2,7 @@
 
 use super::model::Model;
 use super::record::FlightRecord;
-use crate::model::dynamics::Parameters;
-use crate::model::dynamics::extended;
+use crate::model::dynamics::extended::{self, Extended};
 
 /// The filtered commands at every sample.
 pub struct ActuatorResponse {
@@ -14,7 +13,7 @@ pub struct ActuatorResponse {
 
 /// Body rates: those that the filtered commands make, or the gyro's where the log has no commands of them.
 #[inline(always)]
-pub fn body_rates(p: &Parameters<f64>, record: &FlightRecord, command: &[[f64; 4]]) -> Vec<[f64; 3]> {
+pub fn body_rates(p: &Extended<f64>, record: &FlightRecord, command: &[[f64; 4]]) -> Vec<[f64; 3]> {
     if record.commanded[0] {
         command.iter().map(|c| extended::body_rates(p, *c)).collect()
     } else {
@@ -25,7 +24,7 @@ pub fn body_rates(p: &Parameters<f64>, record: &FlightRecord, command: &[[f64; 4
 /// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next, and what arrives is integrated exactly.
 #[inline(always)]
 pub fn actuator_response(
-    p: &Parameters<f64>,
+    p: &Extended<f64>,
     record: &FlightRecord,
     model: &Model,
     x: &[f64],
@@ -92,6 +91,6 @@ pub fn actuator_response(
 
 /// The voltage that a sample's response depends on, V.
 #[inline(always)]
-pub fn supplied(p: &Parameters<f64>, record: &FlightRecord, i: usize) -> f64 {
-    if record.voltage[i].is_finite() { record.voltage[i] } else { p.beyond.full_v }
+pub fn supplied(p: &Extended<f64>, record: &FlightRecord, i: usize) -> f64 {
+    if record.voltage[i].is_finite() { record.voltage[i] } else { p.full_v }
 }

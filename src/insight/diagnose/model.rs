@@ -2,7 +2,7 @@
 
 use super::predict::Dirty;
 use crate::model::constants::CONTROL_S;
-use crate::model::dynamics::extended::Beyond;
+use crate::model::dynamics::extended::Extended;
 use crate::model::dynamics::{Factors, Parameters, drag};
 use crate::model::effects::{self, COUNT, Card, EffectKind, LOG, LOG_COUNT, MODEL, ResidualChannel};
 use crate::model::vehicle::{MaxRates, TimeConstants, Vehicle};
@@ -157,15 +157,14 @@ impl Model {
     }
 
     /// The parameters of the extended model at `x`, for steps of any length.
-    pub fn parameters(&self, x: &[f64]) -> Parameters<f64> {
+    pub fn parameters(&self, x: &[f64]) -> Extended<f64> {
         let mut p = Parameters::new(&self.vehicle, &Factors::NOMINAL, CONTROL_S);
         let tau = std::array::from_fn(|k| x[TAU.start + k]);
         p.max_rate = std::array::from_fn(|k| x[MAX_RATE.start + k]);
         p.thrust = std::array::from_fn(|k| x[THRUST.start + k]);
         p.drag = std::array::from_fn(|k| x[DRAG.start + k]);
         p.voltage_rate = x[DISCHARGE];
-        p.beyond = Beyond::new(&self.vehicle, tau, std::array::from_fn(|k| x[EFFECTS + k]), CONTROL_S);
-        p
+        Extended::of(&self.vehicle, p, tau, std::array::from_fn(|k| x[EFFECTS + k]))
     }
 
     /// The parameters of sensors and chance at `x`.

@@ -8,9 +8,8 @@ use crate::base::lane::{Kernel, Lane32, Level, build, dispatch};
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::period;
 use crate::model::attitude::{compose, dot};
-use crate::model::dynamics::Parameters;
 use crate::model::dynamics::battery::discharged;
-use crate::model::dynamics::extended::{self, ForceInputs};
+use crate::model::dynamics::extended::{self, Extended, ForceInputs};
 use crate::model::effects::{self, ResidualChannel, Sensed};
 use std::sync::Arc;
 
@@ -133,7 +132,7 @@ impl Predicted {
 
     /// Modelled voltage, and that with its slow error taken off, which thrust sees.
     #[inline(always)]
-    fn discharge(&mut self, p: &Parameters<f64>, record: &FlightRecord, begin_v: f64) {
+    fn discharge(&mut self, p: &Extended<f64>, record: &FlightRecord, begin_v: f64) {
         let n = record.time.len();
         if record.volts.is_empty() {
             (self.modelled_v, self.voltage) = (vec![0.0; n].into(), vec![0.0; n].into());
@@ -144,7 +143,7 @@ impl Predicted {
         let mut before = since;
         let mut modelled = Vec::with_capacity(n);
         for (i, &t) in record.time.iter().enumerate() {
-            let open = discharged(begin_v, p.voltage_rate, t - since);
+            let open = discharged(begin_v, p.compact.voltage_rate, t - since);
             let command = if self.command[i][3].is_finite() { self.command[i][3] } else { -1.0 };
             let (v, next) = extended::terminal(p, open, command, polarisation, (t - before).max(0.0));
             (polarisation, before) = (next, t.max(since));
@@ -160,7 +159,7 @@ impl Predicted {
 
     /// Specific force. A velocity that lags by `tau` is taken as what it will be.
     #[inline(always)]
-    fn push(&mut self, p: &Parameters<f64>, record: &FlightRecord, tau: f64, gravity: f64) {
+    fn push(&mut self, p: &Extended<f64>, record: &FlightRecord, tau: f64, gravity: f64) {
         let since = record.since();
         let mut out = Vec::with_capacity(record.time.len());
         let force = |i: usize| -> [f64; 3] { build!(|k| record.fine.imu[3 + k][i]) };
@@ -191,7 +190,7 @@ impl Predicted {
 
     /// Readings, averaged over bins.
     #[inline(always)]
-    fn sense(&mut self, p: &Parameters<f64>, what: Dirty, model: &Model, record: &FlightRecord, x: &[f64]) {
+    fn sense(&mut self, p: &Extended<f64>, what: Dirty, model: &Model, record: &FlightRecord, x: &[f64]) {
         let k = model.sensors(x);
         let arm = ["rx", "ry", "rz"].iter().any(|side| model.of(x, "imu_lever_arm", side) != 0.0);
         let acceleration = if arm { self.turning(p, record) } else { vec![[0.0; 3]; record.time.len()] };
@@ -223,7 +222,7 @@ impl Predicted {
 
     /// Angular acceleration, rad/s2: what the response does at each moment, for it is over in a few samples.
     #[inline(always)]
-    fn turning(&self, p: &Parameters<f64>, record: &FlightRecord) -> Vec<[f64; 3]> {
+    fn turning(&self, p: &Extended<f64>, record: &FlightRecord) -> Vec<[f64; 3]> {
         const MOMENT_S: f64 = 1e-5;
         if !record.commanded[0] {
             return slopes(&record.time, &self.rates);

@@ -52,9 +52,9 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
                 record.bins.iter().map(|b| 0.5 * (record.time[b[0]] + record.time[b[1] - 1])).collect();
             for three in record.sent.windows(3) {
                 let pair = &three[1..];
-                let change = (pair[1].1[axis] - pair[0].1[axis]) * p.max_rate[axis];
+                let change = (pair[1].1[axis] - pair[0].1[axis]) * p.compact.max_rate[axis];
                 // What the loss of the command before would leave reaches into this one.
-                let earlier = (three[1].1[axis] - three[0].1[axis]) * p.max_rate[axis];
+                let earlier = (three[1].1[axis] - three[0].1[axis]) * p.compact.max_rate[axis];
                 if change.abs() < CLEAR * noise || earlier.abs() > 0.25 * change.abs() {
                     continue;
                 }

@@ -35,14 +35,14 @@ pub fn race(
 }
 
 fn vehicle(name: String, raced: &Raced, track: &Track, dt: f64) -> ReplayVehicle {
-    let frames = raced.steps.iter().enumerate().map(|(step, (state, command, target))| Frame {
+    let frames = raced.steps.iter().enumerate().map(|(step, (craft, command, target))| Frame {
         time_s: step as f64 * dt,
-        position: state.position.map(f64::from),
-        velocity: state.velocity.map(f64::from),
-        attitude: state.attitude.map(f64::from),
-        rates: state.body_rates(&raced.parameters).map(f64::from),
+        position: craft.state.position.map(f64::from),
+        velocity: craft.state.velocity.map(f64::from),
+        attitude: craft.state.attitude.map(f64::from),
+        rates: craft.body_rates().map(f64::from),
         command: command.map(f64::from),
-        voltage: f64::from(state.terminal_voltage(&raced.parameters)),
+        voltage: f64::from(craft.terminal_voltage()),
         target: Some(*target as usize),
         observation: raced.seen.get(step).copied(),
     });

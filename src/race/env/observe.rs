@@ -108,14 +108,14 @@ pub fn observe<L: Lane<Elem = f32>>(
 ) {
     let gate = &block.gate;
     let mut position = block.in_gate;
-    let mut velocity = gate.rotate(block.state.velocity);
-    let axes = body_axes(block.state.attitude);
+    let mut velocity = gate.rotate(block.craft.state.velocity);
+    let axes = body_axes(block.craft.state.attitude);
     let mut attitude = each!(axes, |axis| gate.rotate(axis));
-    let body_rates = block.state.body_rates(&block.parameters);
+    let body_rates = block.craft.body_rates();
     let mut rates: [L; 3] = build!(|i| {
         attitude[0][i].mul_add(body_rates[0], attitude[1][i].mul_add(body_rates[1], attitude[2][i] * body_rates[2]))
     });
-    let mut voltage = block.state.terminal_voltage(&block.parameters);
+    let mut voltage = block.craft.terminal_voltage();
     if let Some(noise) = noise {
         position = add(position, noise.position);
         velocity = add(velocity, noise.velocity);
@@ -129,7 +129,7 @@ pub fn observe<L: Lane<Elem = f32>>(
         &velocity,
         attitude,
         &rates,
-        &block.state.command,
+        &block.craft.state.command,
         &block.history[0],
         &block.history[1],
         &block.history[2],

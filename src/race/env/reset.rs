@@ -3,7 +3,7 @@
 use super::Race;
 use crate::base::check::{Check, Invalid};
 use crate::base::rng::Sequence;
-use crate::model::dynamics::{Factors, Parameters, State};
+use crate::model::dynamics::{Craft, Factors, State};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -42,8 +42,7 @@ impl Check for ResetConfig {
 /// How an episode begins.
 #[derive(Clone, Debug)]
 pub struct Start {
-    pub state: State<f64>,
-    pub parameters: Parameters<f64>,
+    pub craft: Craft<f64>,
     /// Index of the first target gate.
     pub target: usize,
 }
@@ -84,8 +83,7 @@ pub fn draw(race: &Race, rng: &mut Sequence, place: Place, factors: Option<Facto
         // Last, so that vehicles with effects and without are given the same start.
         factors.effects = race.vehicle.effects.draw(rng);
     }
-    let parameters = Parameters::new(&race.vehicle, &factors, race.dt);
-    Start { state, parameters, target }
+    Start { craft: Craft::new(&race.vehicle, &factors, race.dt, state), target }
 }
 
 fn on_spline(race: &Race, rng: &mut Sequence, voltage: f64) -> (State<f64>, usize) {

@@ -17,18 +17,19 @@ fn outside<L: Lane>(x: L, low: f64, high: f64) -> L::Mask {
 /// The causes' lanes as bits, each lane at most once.
 #[inline(always)]
 pub fn causes<L: Lane>(race: &Race, block: &Block<L>, missed: L::Mask, timed_out: L::Mask) -> [u32; CAUSES.len()] {
-    let [x, y, z] = block.state.position;
+    let state = &block.craft.state;
+    let [x, y, z] = state.position;
     let [low, high] = race.volume;
     // A number that is not finite makes this sum so.
-    let [vx, vy, vz] = block.state.velocity;
-    let [qw, qx, qy, qz] = block.state.attitude;
+    let [vx, vy, vz] = state.velocity;
+    let [qw, qx, qy, qz] = state.attitude;
     let sum = (x + y + z) + (vx + vy + vz) + (qw + qx + qy + qz);
     let all = [
         (!sum.is_finite()).bits(),
         missed.bits(),
         (outside(x, low[0], high[0]) | outside(y, low[1], high[1])).bits(),
         outside(z, low[2], high[2]).bits(),
-        block.state.voltage.lt(L::of(race.empty_v)).bits(),
+        state.voltage.lt(L::of(race.empty_v)).bits(),
         timed_out.bits(),
     ];
     let mut seen = 0;

@@ -115,7 +115,7 @@ impl Fleet<'_> {
             Fleet::Randomised => reset::draw(race, rng, place, (agent == 0).then_some(Factors::NOMINAL)),
             Fleet::Same(factors, charge) => {
                 let mut start = reset::draw(race, rng, place, Some(*factors));
-                start.state.voltage = race.vehicle.battery.at(charge);
+                start.craft.state.voltage = race.vehicle.battery.at(charge);
                 start
             }
         }
@@ -139,7 +139,7 @@ impl Kernel for Fly<'_> {
     fn run<L: Lane32>(self) -> Flights {
         let Fly { race, network, place, fleet, first, agents, max_steps } = self;
         let mut out = Flights { flights: vec![Flight::default(); TILE_SAMPLES], trace: Vec::new() };
-        let mut blocks: [Block<L>; TILE_BLOCKS] = build!(|b| race.empty_block((first + b * LANES) as u32));
+        let mut blocks: [Block<L>; TILE_BLOCKS] = std::array::from_fn(|b| race.empty_block((first + b * LANES) as u32));
         // Bits of lanes still flying; padding lanes never start.
         let mut alive = [0u32; TILE_BLOCKS];
         for (b, block) in blocks.iter_mut().enumerate() {
@@ -173,7 +173,7 @@ impl Kernel for Fly<'_> {
                     judge(flights, alive[b], action, block.history[0], step);
                 }
                 let outcome = block.step(race, action);
-                let speed = sum_of_squares(block.state.velocity).sqrt();
+                let speed = sum_of_squares(block.craft.state.velocity).sqrt();
                 for lane in lanes(alive[b]) {
                     let flight = &mut flights[lane];
                     flight.steps = step + 1;
@@ -219,16 +219,16 @@ fn judge<L: Lane32>(flights: &mut [Flight], alive: u32, action: [L; ACTIONS], be
 #[inline(always)]
 fn park<L: Lane32>(block: &mut Block<L>, over: u32) {
     let over = L::Mask::from_bits(over);
-    for v in block.state.position.iter_mut().chain(&mut block.state.velocity) {
+    for v in block.craft.state.position.iter_mut().chain(&mut block.craft.state.velocity) {
         *v = L::select(over, L::zero(), *v);
     }
 }
 
 fn moment<L: Lane32>(block: &Block<L>, action: [L; ACTIONS], time_s: f64) -> Moment {
-    let [x, y, z] = block.state.position.map(|v| v.get(0));
-    let [vx, vy, vz] = block.state.velocity.map(|v| v.get(0));
-    let [qw, qx, qy, qz] = block.state.attitude.map(|v| v.get(0));
+    let [x, y, z] = block.craft.state.position.map(|v| v.get(0));
+    let [vx, vy, vz] = block.craft.state.velocity.map(|v| v.get(0));
+    let [qw, qx, qy, qz] = block.craft.state.attitude.map(|v| v.get(0));
     let [roll, pitch, yaw, thrust] = action.map(|v| v.get(0));
-    let (target_gate, voltage) = (block.target[0], block.state.terminal_voltage(&block.parameters).get(0));
+    let (target_gate, voltage) = (block.target[0], block.craft.terminal_voltage().get(0));
     Moment { time_s, x, y, z, vx, vy, vz, qw, qx, qy, qz, roll, pitch, yaw, thrust, target_gate, voltage }
 }

@@ -69,7 +69,7 @@ pub fn spread(
         .collect();
     let raced: Vec<Raced> = blocks.into_iter().flatten().collect();
     let path = |raced: &Raced| -> Vec<Vector3<f64>> {
-        raced.steps.iter().map(|(state, ..)| Vector3::from(state.position.map(f64::from))).collect()
+        raced.steps.iter().map(|(craft, ..)| Vector3::from(craft.state.position.map(f64::from))).collect()
     };
     let nominal = path(&raced[0]);
     let others: Vec<_> = raced[1..].iter().map(path).collect();

@@ -1,0 +1,81 @@
+//! What the extended model remembers beyond the compact model's state.
+
+use crate::base::lane::{Lane, Real};
+use crate::model::constants::CONTROL_S;
+
+/// Commands kept: a delay may be this many control periods less one.
+pub const LINE: usize = 14;
+
+/// What lies between two steps besides the state.
+#[derive(Clone, Copy, Debug)]
+pub struct Memory<R> {
+    /// The last commands, newest first.
+    pub line: [[R; 4]; LINE],
+    /// Time since the newest one, s.
+    pub phase: R,
+    /// Change of the filtered rate commands, 1/s.
+    pub slope: [R; 3],
+    /// Voltage lost to slow polarisation, V.
+    pub polarisation: R,
+}
+
+impl Memory<f64> {
+    /// Before the first step of a flight that begins with `command`, which was held for long without load.
+    pub fn before(command: [f64; 4]) -> Self {
+        Memory { line: [command; LINE], phase: CONTROL_S, slope: [0.0; 3], polarisation: 0.0 }
+    }
+}
+
+impl<R: Copy> Memory<R> {
+    /// Converts every number, in a fixed order.
+    #[inline(always)]
+    pub fn map<S>(&self, mut f: impl FnMut(R) -> S) -> Memory<S> {
+        Memory {
+            line: self.line.map(|command| command.map(&mut f)),
+            phase: f(self.phase),
+            slope: self.slope.map(&mut f),
+            polarisation: f(self.polarisation),
+        }
+    }
+}
+
+impl<L: Lane> Memory<L> {
+    /// Replaces the memory of one lane.
+    pub fn set_lane(&mut self, lane: usize, new: &Memory<L::Elem>) {
+        for (own, new) in self.line.iter_mut().zip(&new.line) {
+            own.iter_mut().zip(new).for_each(|(own, &new)| own.set(lane, new));
+        }
+        self.phase.set(lane, new.phase);
+        self.slope.iter_mut().zip(&new.slope).for_each(|(own, &new)| own.set(lane, new));
+        self.polarisation.set(lane, new.polarisation);
+    }
+}
+
+impl<R: Real> Memory<R> {
+    /// Takes the held command `action` in; a new place in the line begins with each control period.
+    #[inline(always)]
+    pub fn push(&mut self, action: [R; 4]) {
+        let due = R::of(CONTROL_S - 1e-5).le(self.phase);
+        for age in (1..LINE).rev() {
+            for k in 0..4 {
+                self.line[age][k] = R::select(due, self.line[age - 1][k], self.line[age][k]);
+            }
+        }
+        self.line[0] = action;
+        self.phase = R::select(due, R::zero(), self.phase);
+    }
+
+    /// The mean of what arrived of command `k`, `late` seconds late, during the last `h` seconds.
+    #[inline(always)]
+    pub fn arriving(&self, k: usize, late: R, h: R) -> R {
+        let (from, to) = (self.phase - h - late, self.phase - late);
+        let mut sum = self.line[0][k] * (to.max(R::zero()) - from.max(R::zero()));
+        for (age, command) in self.line.iter().enumerate().skip(1) {
+            // Held from `begins` to one period later; the oldest was held before, too.
+            let ends = R::of(-CONTROL_S * (age as f64 - 1.0));
+            let begins = R::of(if age + 1 == LINE { -1e3 } else { -CONTROL_S * age as f64 });
+            sum = command[k].mul_add((to.min(ends).max(begins)) - from.min(ends).max(begins), sum);
+        }
+        sum / h
+    }
+}

@@ -1,0 +1,181 @@
+//! The stages between a command and the motion, each open to every effect that is present. Simulator and diagnosis
+//! compose the same stages; only where the inputs come from differs.
+
+use super::{Extended, Memory};
+use crate::base::lane::{Real, build, each};
+use crate::model::attitude::{body_axes, dot};
+use crate::model::dynamics::{State, drag, response};
+use crate::model::effects::{
+    self, Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, RelativeWind, Setpoint, ThrustInput,
+};
+use crate::model::thrust;
+
+/// Latest that a command arrives, s.
+const LATEST_S: f64 = 0.12;
+
+/// Throttle 0..1 of a command -1..1.
+#[inline(always)]
+pub fn throttle<R: Real>(command: R) -> R {
+    command.mul_add(R::of(0.5), R::of(0.5))
+}
+
+/// By how much the commands of roll, pitch, yaw and thrust arrive late, s.
+#[inline(always)]
+pub fn command_delays<R: Real>(p: &Extended<R>) -> [R; 4] {
+    let mut delay = CommandDelay { rates: R::zero(), yaw: R::zero(), thrust: R::zero() };
+    effects::command_delay(&p.values, &mut delay);
+    // No command comes before it was sent, or later than the line is long.
+    let yaw = (delay.rates + delay.yaw).clamp(R::zero(), R::of(LATEST_S));
+    [delay.rates, delay.rates, yaw, delay.thrust]
+}
+
+/// The filtered commands and their slope `h` seconds later, while the commands that arrive are `sent`, at terminal `voltage`.
+#[inline(always)]
+pub fn actuator_response<R: Real>(
+    p: &Extended<R>,
+    command: [R; 4],
+    slope: [R; 3],
+    sent: [R; 4],
+    voltage: R,
+    h: R,
+) -> ([R; 4], [R; 3]) {
+    let values = &p.values;
+    let zero = R::zero();
+    let tau = p.tau;
+    let mut actuator =
+        Actuator { tau, tau_down: tau[3], inertia: zero, slew: [zero; 3], missing_v: p.full_v - voltage };
+    effects::actuator(values, &mut actuator);
+    let rates = build!(|i| command[i] * p.compact.max_rate[i]);
+    let throttle = throttle(command[3]);
+    let mut setpoint = Setpoint { command: sent, throttle, rates, tau: actuator.tau, max_rate: p.compact.max_rate };
+    effects::setpoint(values, &mut setpoint);
+    let falling = setpoint.command[3].lt(command[3]);
+    let tau =
+        [actuator.tau[0], actuator.tau[1], actuator.tau[2], R::select(falling, actuator.tau_down, actuator.tau[3])];
+    let mut next: [R; 4] =
+        build!(|i| response::toward(command[i], setpoint.command[i], R::one() - (-(h / tau[i])).exp()));
+    let mut next_slope = slope;
+    let (oscillates, limited) = values.shapes();
+    if limited {
+        for i in 0..3 {
+            next[i] =
+                response::limited(command[i], setpoint.command[i], tau[i], actuator.slew[i] * p.compact.max_rate[i], h);
+        }
+    }
+    if oscillates {
+        // A lane without inertia keeps what the others of its block override.
+        let oscillates_here = zero.lt(actuator.inertia);
+        for i in 0..3 {
+            let (value, change) =
+                response::second_order(command[i], slope[i], setpoint.command[i], tau[i], actuator.inertia, h);
+            next[i] = R::select(oscillates_here, value, next[i]);
+            next_slope[i] = R::select(oscillates_here, change, next_slope[i]);
+        }
+    }
+    (next, next_slope)
+}
+
+/// Body rates that filtered commands stand for, rad/s.
+#[inline(always)]
+pub fn body_rates<R: Real>(p: &Extended<R>, command: [R; 4]) -> [R; 3] {
+    let mut body = BodyRates { rates: build!(|i| command[i] * p.compact.max_rate[i]), throttle: throttle(command[3]) };
+    effects::body_rates(&p.values, &mut body);
+    body.rates
+}
+
+/// Terminal voltage and polarisation (V) after `dt` seconds under the filtered thrust command, from the open-circuit voltage.
+#[inline(always)]
+pub fn terminal<R: Real>(p: &Extended<R>, open: R, command: R, polarisation: R, dt: R) -> (R, R) {
+    let s = throttle(command);
+    let charge = (open - p.empty_v) / (p.full_v - p.empty_v);
+    let mut battery_load = BatteryLoad { load: s * s, dt, charge, polarisation, drop: R::zero() };
+    effects::battery_load(&p.values, &mut battery_load);
+    (open - battery_load.drop, battery_load.polarisation)
+}
+
+/// What thrust and drag depend on.
+#[derive(Clone, Copy, Debug)]
+pub struct ForceInputs<R> {
+    /// Filtered thrust command, -1..1.
+    pub command: R,
+    /// At the terminals, V.
+    pub voltage: R,
+    /// The body's axes in the world.
+    pub axes: [[R; 3]; 3],
+    /// Over ground, body frame, m/s.
+    pub velocity: [R; 3],
+    /// Body rates, rad/s.
+    pub rates: [R; 3],
+    /// Over the ground, m.
+    pub height: R,
+    /// Sum over the axes of |command - response|.
+    pub rate_error: R,
+    /// Time since the battery was full, s.
+    pub elapsed: R,
+}
+
+impl<R: Real> ForceInputs<R> {
+    /// Those of a state.
+    #[inline(always)]
+    fn of(s: &State<R>, p: &Extended<R>, memory: &Memory<R>) -> Self {
+        let axes = body_axes(s.attitude);
+        let velocity = build!(|i| dot(axes[i], s.velocity));
+        let mut rate_error = R::zero();
+        for i in 0..3 {
+            rate_error = rate_error + (memory.line[0][i] - s.command[i]).abs();
+        }
+        ForceInputs {
+            command: s.command[3],
+            voltage: loaded(s, p, memory),
+            axes,
+            velocity,
+            rates: body_rates(p, s.command),
+            height: s.position[2],
+            rate_error,
+            elapsed: elapsed(p, s.voltage),
+        }
+    }
+}
+
+/// Time since the battery was full, from its open-circuit voltage, s; at most an hour, for batteries that hardly discharge.
+#[inline(always)]
+pub fn elapsed<R: Real>(p: &Extended<R>, open: R) -> R {
+    ((p.full_v - open) / (-p.compact.voltage_rate).max(R::of(1e-6))).clamp(R::zero(), R::of(3600.0))
+}
+
+/// Specific force, body frame, m/s2.
+#[inline(always)]
+pub fn force<R: Real>(p: &Extended<R>, at: &ForceInputs<R>) -> [R; 3] {
+    let values = &p.values;
+    let half = R::of(0.5);
+    let middle_v = (p.full_v + p.empty_v) * half;
+    let mut input = ThrustInput { command: at.command, voltage: at.voltage, middle_v };
+    effects::thrust_input(values, &mut input);
+    let mut wind = RelativeWind { axes: at.axes, velocity: at.velocity };
+    effects::relative_wind(values, &mut wind);
+    let damping = drag::damping_in_body(&p.compact.drag, wind.velocity);
+    let mut forces = AerodynamicForces {
+        throttle: throttle(at.command),
+        velocity: wind.velocity,
+        rates: at.rates,
+        height: at.height,
+        rate_error: at.rate_error,
+        elapsed: at.elapsed,
+        specific_thrust: thrust::specific_thrust(&p.compact.thrust, input.command, input.voltage),
+        force: each!(wind.velocity, |v| -damping * v),
+    };
+    effects::aerodynamic_forces(values, &mut forces);
+    [forces.force[0], forces.force[1], forces.force[2] + forces.specific_thrust]
+}
+
+/// Voltage at the battery's terminals under the present load, V.
+#[inline(always)]
+pub fn loaded<R: Real>(s: &State<R>, p: &Extended<R>, memory: &Memory<R>) -> R {
+    terminal(p, s.voltage, s.command[3], memory.polarisation, R::zero()).0
+}
+
+/// Thrust, drag and what effects add, over the mass, body frame, m/s2.
+#[inline(always)]
+pub fn specific_force<R: Real>(s: &State<R>, p: &Extended<R>, memory: &Memory<R>) -> [R; 3] {
+    force(p, &ForceInputs::of(s, p, memory))
+}
