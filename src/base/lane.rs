@@ -175,8 +175,8 @@ pub trait Single: Real {
 pub trait Lane: Real {
     /// The number in each lane.
     type Elem: Real<Mask = bool> + PartialOrd + Default + fmt::Debug;
-    /// Rows and 16-lane columns of the matrix micro-kernel's tile that this CPU's registers hold.
-    const TILE: Tile;
+    /// Runs `work` with the tile that this CPU's registers hold. A call and not a constant, so that other tiles are never compiled.
+    fn tiled<T: Tiled>(work: T);
 
     fn splat(x: Self::Elem) -> Self;
     fn from_array(x: [Self::Elem; LANES]) -> Self;
@@ -245,15 +245,10 @@ pub trait Lane: Real {
     }
 }
 
-/// The register tile of the matrix micro-kernel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tile {
-    /// 6 rows x 4 blocks: 24 accumulators of 32 registers that hold a block each.
-    Rows6Blocks4,
-    /// 3 rows x 2 blocks: 12 accumulators of 16 registers that hold half a block each.
-    Rows3Blocks2,
-    /// 1 row x 2 blocks: 8 accumulators of 16 registers that hold a quarter of a block each.
-    Rows1Blocks2,
+/// Work of the matrix micro-kernel on register tiles of ROWS rows and BLOCKS 16-lane columns.
+pub trait Tiled {
+    /// The body; mark it `#[inline(always)]`.
+    fn run<const ROWS: usize, const BLOCKS: usize>(self);
 }
 
 /// A block of `f32`: what the simulator and the network run on.
@@ -298,19 +293,6 @@ impl Word for u32 {
     }
 }
 
-/// Asks for the cache line at `p` before it is needed. Any address will do.
-#[inline(always)]
-pub fn prefetch<T>(p: *const T) {
-    #[cfg(target_arch = "x86_64")]
-    // SAFETY: every x86-64 has the instruction, and it never faults.
-    unsafe {
-        use std::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
-        _mm_prefetch::<_MM_HINT_T1>(p.cast());
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = p;
-}
-
 /// Work to be run on the best blocks this CPU has.
 pub trait Kernel {
     type Output;
@@ -325,7 +307,8 @@ pub enum Level {
     Avx512,
     /// Two 256-bit registers a block, fused multiply-add.
     Avx2,
-    /// What the compiler makes of a loop over 16 numbers; multiply-add is not fused.
+    /// Four 128-bit registers a block, which every x86-64 has; elsewhere what the compiler makes of a loop over 16 numbers.
+    /// Multiply-add is not fused.
     Portable,
 }
 
@@ -380,6 +363,12 @@ pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
             #[inline(always)]
             || kernel.run::<x86::Avx2>(),
         ),
+        #[cfg(target_arch = "x86_64")]
+        Level::Portable => x86::Sse2::vectorize(
+            #[inline(always)]
+            || kernel.run::<x86::Sse2>(),
+        ),
+        #[cfg(not(target_arch = "x86_64"))]
         _ => kernel.run::<Portable<f32>>(),
     }
 }

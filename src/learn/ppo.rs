@@ -3,6 +3,7 @@
 //! Knows nothing of racing: it sees an [`Environment`], and reports to an [`train::Observer`].
 
 mod awake;
+pub mod batch;
 mod chunk;
 pub mod config;
 pub mod gae;

@@ -218,22 +218,33 @@ impl<L: Lane32> Block<L> {
         L::Bits::from_array(build!(|i| self.first + i as u32))
     }
 
-    /// Writes the observation of the 16 lanes, entry `k` to `out[k * stride..]`.
-    #[inline(always)]
+    /// Writes the observation of the 16 lanes, entry `k` to `out[k * stride..]`. A function of its own, as [`Block::step`]:
+    /// rollouts, evaluations and races share one compiled body for each kind of block.
     pub fn observe(&self, race: &Race, out: &mut [f32], stride: usize) {
-        let config = &race.config.noise;
-        // No closure: a closure is compiled on its own, without the block's instructions.
-        if race.noisy {
-            let noise = noise::of_observation(config, &race.rng, self.environments(), self.step);
-            observe::observe(self, Some(&noise), race.voltage_scale, out, stride);
-        } else {
-            observe::observe(self, None, race.voltage_scale, out, stride);
-        }
+        L::vectorize(
+            #[inline(always)]
+            || {
+                // No `then`: a closure is compiled on its own, without the block's instructions.
+                let noise = if race.noisy {
+                    Some(noise::of_observation(&race.config.noise, &race.rng, self.environments(), self.step))
+                } else {
+                    None
+                };
+                observe::observe(self, noise.as_ref(), race.voltage_scale, out, stride);
+            },
+        )
     }
 
     /// One step under `action`, as the policy gave it. Ended episodes stay as they ended.
-    #[inline(always)]
     pub fn step(&mut self, race: &Race, action: [L; 4]) -> Outcome<L> {
+        L::vectorize(
+            #[inline(always)]
+            || self.stepped(race, action),
+        )
+    }
+
+    #[inline(always)]
+    fn stepped(&mut self, race: &Race, action: [L; 4]) -> Outcome<L> {
         let config = &race.config;
         let applied = if race.noisy {
             let noise = noise::of_action::<L>(&config.noise, &race.rng, self.environments(), self.step);

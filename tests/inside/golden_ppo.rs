@@ -2,9 +2,10 @@
 
 use racer::base::lane::{LANES, Level, Portable, Real};
 use racer::learn::nn::{Layer, Network};
+use racer::learn::ppo::batch::Batch;
 use racer::learn::ppo::gae;
 use racer::learn::ppo::loss::Weights;
-use racer::learn::ppo::update::{Batch, Hyper, Losses, Updater};
+use racer::learn::ppo::update::{Hyper, Losses, Updater};
 use serde_json::Value;
 
 fn golden() -> Value {

@@ -4,8 +4,9 @@ use racer::base::lane::{LANES, Portable};
 use racer::base::rng::{Philox, Stream};
 use racer::learn::nn::Network;
 use racer::learn::policy::log_prob_of;
+use racer::learn::ppo::batch::Batch;
 use racer::learn::ppo::loss::Weights;
-use racer::learn::ppo::update::{Batch, Updater};
+use racer::learn::ppo::update::Updater;
 
 const ROWS: usize = 5;
 const INPUTS: usize = 11;

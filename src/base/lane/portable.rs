@@ -1,6 +1,6 @@
 //! The block as an array of 16 numbers: for CPUs without a block of their own, and for `f64` gradient checks.
 
-use super::{Bits, LANES, Lane, Lane32, Mask, Real, Single, Tile, Word};
+use super::{Bits, LANES, Lane, Lane32, Mask, Real, Single, Tiled, Word};
 use std::array::from_fn;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -138,8 +138,11 @@ macro_rules! lane {
     ($e:ty) => {
         impl Lane for Portable<$e> {
             type Elem = $e;
-            const TILE: Tile = Tile::Rows1Blocks2;
-
+            // 8 accumulators of 16 registers that hold a quarter of a block each.
+            #[inline(always)]
+            fn tiled<T: Tiled>(work: T) {
+                work.run::<1, 2>()
+            }
             #[inline(always)]
             fn splat(x: $e) -> Self {
                 Portable([x; LANES])

@@ -3,9 +3,13 @@
 //! Soundness: the types are private to `lane` and are reached only through [`super::dispatch`], which has checked the
 //! CPU; so the instructions they use exist wherever they do.
 
-use super::{Bits, LANES, Lane, Lane32, Mask, Real, Single, Tile, Word, math};
+mod sse2;
+
+use super::{Bits, LANES, Lane, Lane32, Mask, Real, Single, Tiled, Word, math};
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+
+pub use sse2::Sse2;
 
 pub fn has_avx2() -> bool {
     is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
@@ -380,10 +384,13 @@ fn row_sums_avx2(r: [Avx2; LANES]) -> Avx2 {
 }
 
 macro_rules! lane {
-    ($t:ty, $tile:expr, $load:expr, $store:expr, $transpose:expr, $row_sums:expr) => {
+    ($t:ty, $rows:literal x $blocks:literal, $load:expr, $store:expr, $transpose:expr, $row_sums:expr) => {
         impl Lane for $t {
             type Elem = f32;
-            const TILE: Tile = $tile;
+            #[inline(always)]
+            fn tiled<T: Tiled>(work: T) {
+                work.run::<$rows, $blocks>()
+            }
             #[inline(always)]
             fn splat(x: f32) -> Self {
                 Self::of(x as f64)
@@ -420,17 +427,19 @@ macro_rules! lane {
     };
 }
 // SAFETY (all closures): see the module's page, and the caller's promise about the pointer.
+// 24 accumulators of 32 registers that hold a block each.
 lane!(
     Avx512,
-    Tile::Rows6Blocks4,
+    6 x 4,
     |p| Avx512(unsafe { _mm512_loadu_ps(p) }),
     |s: Avx512, p| unsafe { _mm512_storeu_ps(p, s.0) },
     transpose_avx512,
     row_sums_avx512
 );
+// 12 accumulators of 16 registers that hold half a block each.
 lane!(
     Avx2,
-    Tile::Rows3Blocks2,
+    3 x 2,
     |p: *const f32| Avx2(unsafe { [_mm256_loadu_ps(p), _mm256_loadu_ps(p.add(8))] }),
     |s: Avx2, p: *mut f32| unsafe {
         _mm256_storeu_ps(p, s.0[0]);

@@ -5,7 +5,7 @@
 //! while it is still in registers is a [`Finish`].
 
 use super::HIDDEN;
-use crate::base::lane::{LANES, Lane, Tile, build};
+use crate::base::lane::{LANES, Lane, Tiled, build};
 
 /// Blocks of a row of B and C.
 const BLOCKS: usize = HIDDEN / LANES;
@@ -47,57 +47,55 @@ pub fn multiply<L: Lane, F: Finish<L>>(rows: usize, inner: usize, a: Broadcast<L
     let all = rows + F::SUMS as usize;
     assert!(rows > 0 && inner > 0 && finish.rows() >= all && b.len() >= inner * HIDDEN);
     assert!(a.data.len() > (rows - 1) * a.row + (inner - 1) * a.column);
-    let mut product = Product::<L, F> { inner, a, b: b.as_ptr(), finish };
+    let product = Product::<L, F> { inner, all, a, b: b.as_ptr(), finish };
     // A function of its own: the caller would otherwise hold a copy of every tile shape for every product.
     L::vectorize(
         #[inline(always)]
-        || {
-            // SAFETY: the matrices hold `all` rows and `inner` columns, as asserted.
-            unsafe {
-                match L::TILE {
-                    Tile::Rows6Blocks4 => product.cover::<6, 4>(all),
-                    Tile::Rows3Blocks2 => product.cover::<3, 2>(all),
-                    Tile::Rows1Blocks2 => product.cover::<1, 2>(all),
-                }
-            }
-        },
+        || L::tiled(product),
     );
 }
 
 struct Product<'a, L: Lane, F> {
     inner: usize,
+    /// Rows of C, that of sums included.
+    all: usize,
     a: Broadcast<'a, L::Elem>,
     b: *const L::Elem,
     finish: F,
 }
 
-impl<L: Lane, F: Finish<L>> Product<'_, L, F> {
-    /// Covers `all` rows with tiles of R x C blocks, then with what remains; the row of sums is in the last tile.
+impl<L: Lane, F: Finish<L>> Tiled for Product<'_, L, F> {
+    /// Covers the rows with tiles of R x C blocks, then with what remains; the row of sums is in the last tile.
     #[inline(always)]
-    unsafe fn cover<const R: usize, const C: usize>(&mut self, all: usize) {
-        // SAFETY: promised by the caller; tiles end at `all`.
+    fn run<const R: usize, const C: usize>(mut self) {
+        // SAFETY: the matrices hold `all` rows and `inner` columns, as `multiply` asserted, and tiles end at `all`.
         unsafe {
-            let mut row = 0;
+            let (mut row, all) = (0, self.all);
             while row + R < all || (!F::SUMS && row + R == all) {
                 self.tiles::<R, C, false>(row);
                 row += R;
             }
             match all - row {
                 0 => {}
-                1 => self.last::<1, C>(row),
-                2 => self.last::<2, C>(row),
-                3 => self.last::<3, C>(row),
-                4 => self.last::<4, C>(row),
-                5 => self.last::<5, C>(row),
-                _ => self.last::<6, C>(row),
+                1 => self.last::<1, R, C>(row),
+                2 => self.last::<2, R, C>(row),
+                3 => self.last::<3, R, C>(row),
+                4 => self.last::<4, R, C>(row),
+                5 => self.last::<5, R, C>(row),
+                _ => self.last::<6, R, C>(row),
             }
         }
     }
+}
 
+impl<L: Lane, F: Finish<L>> Product<'_, L, F> {
+    /// The last N rows, at most R. Tests of constants: what they exclude is not even compiled.
     #[inline(always)]
-    unsafe fn last<const R: usize, const C: usize>(&mut self, row: usize) {
-        // SAFETY: promised by the caller.
-        unsafe { if F::SUMS { self.tiles::<R, C, true>(row) } else { self.tiles::<R, C, false>(row) } }
+    unsafe fn last<const N: usize, const R: usize, const C: usize>(&mut self, row: usize) {
+        if const { N <= R } {
+            // SAFETY: promised by the caller.
+            unsafe { if F::SUMS { self.tiles::<N, C, true>(row) } else { self.tiles::<N, C, false>(row) } }
+        }
     }
 
     #[inline(always)]

@@ -1,8 +1,8 @@
 //! Loss and gradient of a chunk of a minibatch, in tiles whose activations stay in cache from the first layer's forward to
 //! the first layer's gradient.
 
+use super::batch::Batch;
 use super::loss::{Samples, TERMS, Weights, loss};
-use super::update::Batch;
 use crate::base::lane::{LANES, Lane, Real, build};
 use crate::learn::nn::Network;
 use crate::learn::nn::aligned::Aligned;

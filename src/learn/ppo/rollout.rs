@@ -94,6 +94,36 @@ impl Rollout {
     }
 }
 
+impl TileRows<'_> {
+    /// Keeps block `b` of the observations `seen` `[feature][64]` in `row`.
+    #[inline(always)]
+    fn keep_seen(&mut self, row: usize, b: usize, seen: &[f32]) {
+        let features = seen.len() / TILE_SAMPLES;
+        let out = &mut self.observations[row * features * LANES..][..features * LANES];
+        for (out, seen) in out.chunks_exact_mut(LANES).zip(seen.chunks_exact(TILE_SAMPLES)) {
+            out.copy_from_slice(&seen[b * LANES..][..LANES]);
+        }
+    }
+
+    /// Keeps an action, its log-probability and the critic's `value` in `row`.
+    #[inline(always)]
+    fn keep_action<L: Lane32>(&mut self, row: usize, z: &[L; policy::ACTIONS], log_prob: L, value: &[f32]) {
+        for (k, z) in z.iter().enumerate() {
+            z.write(&mut self.z[(row * policy::ACTIONS + k) * LANES..]);
+        }
+        log_prob.write(&mut self.log_prob[row * LANES..]);
+        self.values[row * LANES..][..LANES].copy_from_slice(value);
+    }
+
+    /// Keeps what came of it.
+    #[inline(always)]
+    fn keep_step<L: Lane32>(&mut self, row: usize, step: &Step<L>) {
+        step.reward.write(&mut self.rewards[row * LANES..]);
+        self.terminated[row] = step.terminated;
+        self.truncated[row] = step.truncated;
+    }
+}
+
 /// A tile of environments between rollouts.
 #[derive(Clone)]
 pub struct Tile<E: Environment> {
@@ -145,53 +175,32 @@ impl<E: Environment> Kernel for Collect<'_, E> {
 
     #[inline(always)]
     fn run<L: Lane32>(self) {
-        let Collect { environment, network, rng, tile, out, steps, first_step } = self;
-        let n = environment.observations();
-        let log_std = network.log_std();
+        let Collect { environment, network, rng, tile, mut out, steps, first_step } = self;
+        let log_std = each!(network.log_std(), |s| L::splat(s));
         let mut blocks: [E::Block<L>; TILE_BLOCKS] = std::array::from_fn(|b| environment.load(&tile.saved[b]));
-        let mut seen = vec![0.0f32; n * TILE_SAMPLES];
+        let mut seen = vec![0.0f32; environment.observations() * TILE_SAMPLES];
         let mut scratch = network.scratch::<L>();
         let (mut mean, mut value) = ([0.0f32; policy::ACTIONS * TILE_SAMPLES], [0.0f32; TILE_SAMPLES]);
         tile.tally = E::Tally::default();
 
         for t in 0..steps {
-            let step = first_step + t as u32;
-            for (b, block) in blocks.iter().enumerate() {
-                environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
-            }
+            look(environment, &blocks, &mut seen);
             network.forward::<L>(&seen, &mut scratch, &mut mean, &mut value);
             let mut truncated_any = 0;
             for (b, block) in blocks.iter_mut().enumerate() {
                 let row = t * TILE_BLOCKS + b;
-                let column = |k: usize| k * TILE_SAMPLES + b * LANES;
-                for k in 0..n {
-                    let from = &seen[column(k)..column(k) + LANES];
-                    out.observations[(row * n + k) * LANES..][..LANES].copy_from_slice(from);
-                }
-                let environments = L::Bits::from_array(build!(|i| tile.first + (b * LANES + i) as u32));
-                let w = rng.block(Stream::Action, environments, step, 0);
-                let ((n0, n1), (n2, n3)) = (normals::<L>(w[0], w[1]), normals::<L>(w[2], w[3]));
-                let mean: [L; 4] = build!(|k| L::from_slice(&mean[column(k)..]));
-                let (z, log_prob) = policy::sample(mean, each!(log_std, |s| L::splat(s)), [n0, n1, n2, n3]);
-                for (k, z) in z.iter().enumerate() {
-                    z.write(&mut out.z[(row * policy::ACTIONS + k) * LANES..]);
-                }
-                let lanes = row * LANES..(row + 1) * LANES;
-                log_prob.write(&mut out.log_prob[lanes.clone()]);
-                out.values[lanes.clone()].copy_from_slice(&value[b * LANES..][..LANES]);
-
-                let Step { reward, terminated, truncated } =
-                    environment.step(block, each!(z, |z| z.tanh()), &mut tile.tally);
-                reward.write(&mut out.rewards[lanes]);
-                out.terminated[row] = terminated;
-                out.truncated[row] = truncated;
-                truncated_any |= truncated;
+                out.keep_seen(row, b, &seen);
+                let mean = build!(|k| L::from_slice(&mean[k * TILE_SAMPLES + b * LANES..]));
+                let noise = exploration::<L>(rng, tile.first + (b * LANES) as u32, first_step + t as u32);
+                let (z, log_prob) = policy::sample(mean, log_std, noise);
+                out.keep_action(row, &z, log_prob, &value[b * LANES..][..LANES]);
+                let step = environment.step(block, each!(z, |z| z.tanh()), &mut tile.tally);
+                out.keep_step(row, &step);
+                truncated_any |= step.truncated;
             }
             // The critic sees where truncated episodes stopped, before they begin anew.
             if truncated_any != 0 {
-                for (b, block) in blocks.iter().enumerate() {
-                    environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
-                }
+                look(environment, &blocks, &mut seen);
                 network.forward_critic::<L>(&seen, &mut scratch, &mut value);
                 out.final_values[t * TILE_SAMPLES..(t + 1) * TILE_SAMPLES].copy_from_slice(&value);
             }
@@ -200,10 +209,27 @@ impl<E: Environment> Kernel for Collect<'_, E> {
                 environment.reset(block, out.terminated[row] | out.truncated[row], &mut tile.tally);
             }
         }
-        for (b, block) in blocks.iter().enumerate() {
-            environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
-            tile.saved[b] = environment.save(block, &mut tile.tally);
-        }
+        look(environment, &blocks, &mut seen);
         network.forward_critic::<L>(&seen, &mut scratch, out.last_values);
+        for (saved, block) in tile.saved.iter_mut().zip(&blocks) {
+            *saved = environment.save(block, &mut tile.tally);
+        }
     }
+}
+
+/// The observations of a tile's blocks side by side, `[feature][64]`.
+#[inline(always)]
+fn look<E: Environment, L: Lane32>(environment: &E, blocks: &[E::Block<L>; TILE_BLOCKS], seen: &mut [f32]) {
+    for (b, block) in blocks.iter().enumerate() {
+        environment.observe(block, &mut seen[b * LANES..], TILE_SAMPLES);
+    }
+}
+
+/// Standard normals for the actions of environments `first..first + 16` at `step`.
+#[inline(always)]
+fn exploration<L: Lane32>(rng: &Philox, first: u32, step: u32) -> [L; policy::ACTIONS] {
+    let environments = L::Bits::from_array(build!(|i| first + i as u32));
+    let w = rng.block(Stream::Action, environments, step, 0);
+    let ((n0, n1), (n2, n3)) = (normals::<L>(w[0], w[1]), normals::<L>(w[2], w[3]));
+    [n0, n1, n2, n3]
 }

@@ -1,10 +1,11 @@
 //! The training loop: rollout, advantages, update, snapshot.
 
 use super::awake::awake;
+use super::batch::Batch;
 use super::config::{BudgetConfig, PpoConfig};
 use super::loss::Weights;
 use super::rollout::{Rollout, Tile, collect};
-use super::update::{Batch, Hyper, Losses, Updater};
+use super::update::{Hyper, Losses, Updater};
 use super::{Environment, Tally, gae};
 use crate::base::lane::Level;
 use crate::base::rng::{Philox, Stream};

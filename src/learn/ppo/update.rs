@@ -3,6 +3,7 @@
 //! Work is cut into chunks of a fixed number of rows whatever the thread count, each with a gradient of its own, summed in
 //! order: one thread and many give the same bits.
 
+use super::batch::Batch;
 use super::chunk::{Chunk, Job, Worker};
 use super::loss::{TERMS, Weights};
 use crate::base::lane::{Kernel, LANES, Lane, Lane32, Level, Real, dispatch};
@@ -13,19 +14,6 @@ use crate::learn::policy;
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// A batch in rows of 16 samples; features lie `[row][feature][16]`.
-#[derive(Clone, Copy)]
-pub struct Batch<'a, E> {
-    /// `[rows][observations][16]`
-    pub observations: &'a [E],
-    /// `[rows][4][16]`
-    pub z: &'a [E],
-    /// `[rows][16]` each.
-    pub log_prob: &'a [E],
-    pub advantages: &'a [E],
-    pub returns: &'a [E],
-}
 
 /// What a step depends on besides the data.
 #[derive(Clone, Copy, Debug, PartialEq)]
