@@ -373,6 +373,16 @@ pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
     }
 }
 
+/// Runs `work` on scalars where a fused multiply-add is one instruction, if this CPU has it; elsewhere it is a call of a function,
+/// with the same result.
+pub fn fused<T>(work: impl FnOnce() -> T) -> T {
+    #[cfg(target_arch = "x86_64")]
+    if x86::has_avx2() {
+        return x86::Avx2::vectorize(work);
+    }
+    work()
+}
+
 macro_rules! scalar {
     ($t:ty, $fuses:literal, $exp:expr, $ln:expr, $tanh:expr, $tanh_pair:expr, $sin_cos:expr) => {
         impl Real for $t {

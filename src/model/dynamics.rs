@@ -58,10 +58,9 @@ impl Parameters<f64> {
     /// The parameters of `vehicle` with `factors` for steps of `dt` seconds.
     pub fn new(vehicle: &Vehicle, factors: &Factors, dt: f64) -> Self {
         let tau = vehicle.time_constants();
-        let alpha = build!(|i| response::alpha(tau[i] * factors.time_constant[i], dt));
-        let mean_alpha = build!(|i| {
-            1.0 - tau[i] * factors.time_constant[i] / dt * response::alpha(tau[i] * factors.time_constant[i], dt)
-        });
+        let tau: [f64; 4] = build!(|i| tau[i] * factors.time_constant[i]);
+        let alpha = tau.map(|tau| response::alpha(tau, dt));
+        let mean_alpha = build!(|i| 1.0 - tau[i] / dt * alpha[i]);
         let max_rate = vehicle.max_rates_rad_s();
         Parameters {
             dt,

@@ -484,8 +484,9 @@ impl Word for Avx512Bits {
             let x = _mm512_set1_epi32(x as i32);
             let even = _mm512_mul_epu32(self.0, x);
             let odd = _mm512_mul_epu32(_mm512_srli_epi64::<32>(self.0), x);
-            let high = _mm512_mask_blend_epi32(0xaaaa, _mm512_srli_epi64::<32>(even), odd);
-            let low = _mm512_mask_blend_epi32(0xaaaa, even, _mm512_slli_epi64::<32>(odd));
+            // A shuffle of pairs under a mask moves and merges at once.
+            let high = _mm512_mask_shuffle_epi32::<0xf5>(odd, 0x5555, even);
+            let low = _mm512_mask_shuffle_epi32::<0xa0>(even, 0xaaaa, odd);
             (Self(high), Self(low))
         }
     }

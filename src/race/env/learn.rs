@@ -58,8 +58,10 @@ impl Environment for Race {
             let passed = block.passed[lane];
             tally.laps += f64::from(u8::from(passed > 1 && (passed - 1).is_multiple_of(self.gates.len() as u32)));
         }
-        for (count, lanes) in tally.causes.iter_mut().zip(outcome.causes) {
-            *count += f64::from(lanes.count_ones());
+        if outcome.terminated != 0 {
+            for (count, lanes) in tally.causes.iter_mut().zip(outcome.causes) {
+                *count += f64::from(lanes.count_ones());
+            }
         }
         tally.truncated += f64::from(outcome.truncated.count_ones());
         let reward = L::select(outcome.reward.is_finite(), outcome.reward, L::zero());
