@@ -108,13 +108,14 @@ impl Simulation {
     pub fn motions(&self) -> Vec<Motion> {
         let motion = |i: usize| {
             let (block, lane) = (&self.blocks[i / LANES], i % LANES);
-            let (state, parameters) = (block.state.map(|x| x.get(lane)), block.parameters.map(|x| x.get(lane)));
+            let craft = block.craft.map(|x| x.get(lane));
+            let state = &craft.state;
             Motion {
                 position_m: state.position.map(f64::from),
                 velocity_m_s: state.velocity.map(f64::from),
                 attitude: state.attitude.map(f64::from),
-                body_rates_rad_s: state.body_rates(&parameters).map(f64::from),
-                voltage_v: f64::from(state.terminal_voltage(&parameters)),
+                body_rates_rad_s: craft.body_rates().map(f64::from),
+                voltage_v: f64::from(craft.terminal_voltage()),
                 target_gate: block.target[lane] as usize,
                 gates_passed: block.passed[lane] as usize,
             }
