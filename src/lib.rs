@@ -73,7 +73,7 @@ pub use model::track::Track;
 pub use model::vehicle::Vehicle;
 pub use race::config::Setup;
 pub use race::env::observe::OBSERVATIONS;
-pub use race::env::reset::Place as StartPlace;
+pub use race::env::reset::StartPlace;
 pub use race::eval::Report;
 pub use race::eval::score::Benchmark;
 pub use race::simulation::{Ending, Motion, Simulation, Transition};

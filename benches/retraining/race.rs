@@ -11,7 +11,7 @@ use racer::model::dynamics::State;
 use racer::model::vehicle::Vehicle;
 use racer::race::env::gates::{GateFrame, crossing};
 use racer::race::env::observe::OBSERVATIONS;
-use racer::race::env::reset::Place;
+use racer::race::env::reset::StartPlace;
 use racer::race::env::{Block, Race};
 use racer::race::eval::fly::fly;
 use racer::race::snapshot::Snapshot;
@@ -57,7 +57,7 @@ pub fn in_racer(policy: &Snapshot) -> Raced {
     let about = &policy.about;
     let race = Race::new(&about.env, &about.track, &about.vehicle, about.seed).scored(&about.track);
     let steps = (LONGEST_S / CONTROL_S) as u32;
-    let flights = fly(Level::best(), &race, &policy.network, Place::Pad, 1, steps);
+    let flights = fly(Level::best(), &race, &policy.network, StartPlace::Pad, 1, steps);
     // The first moment is the start itself.
     let path = flights.trace.iter().skip(1).map(|m| [m.x, m.y, m.z, m.vx, m.vy, m.vz].map(f64::from)).collect();
     Raced { lap_s: flights.flights[0].lap_time(race.gates.len()), failure: None, path }

@@ -162,11 +162,6 @@ pub trait Single: Real {
     fn round(self) -> Self;
     /// `2^self` for a whole number in -126..=127.
     fn pow2(self) -> Self;
-    /// `self / b` for a normal `b`, to within a few units in the last place where that is faster than a division.
-    #[inline(always)]
-    fn divide_fast(self, b: Self) -> Self {
-        self / b
-    }
     /// `(m, e)` with `self = m 2^e`, `m` in [0.5, 1), for a positive normal number.
     fn split_exponent(self) -> (Self, Self);
 }
@@ -261,7 +256,6 @@ pub trait Lane32: Lane<Elem = f32> + Single {
 /// An unsigned 32-bit integer, or 16 of them: what random numbers are made of.
 pub trait Word: Copy + BitXor<Output = Self> + BitAnd<Output = Self> {
     fn splat(x: u32) -> Self;
-    fn wrapping_add(self, b: Self) -> Self;
     /// `(high, low)` halves of the 64-bit product.
     fn mul_wide(self, x: u32) -> (Self, Self);
     fn shift_right<const N: u32>(self) -> Self;
@@ -270,6 +264,7 @@ pub trait Word: Copy + BitXor<Output = Self> + BitAnd<Output = Self> {
 /// A block of [`LANES`] words.
 pub trait Bits: Word {
     fn from_array(x: [u32; LANES]) -> Self;
+    #[cfg_attr(not(feature = "internals"), allow(dead_code))]
     fn to_array(self) -> [u32; LANES];
 }
 
@@ -277,10 +272,6 @@ impl Word for u32 {
     #[inline(always)]
     fn splat(x: u32) -> Self {
         x
-    }
-    #[inline(always)]
-    fn wrapping_add(self, b: Self) -> Self {
-        u32::wrapping_add(self, b)
     }
     #[inline(always)]
     fn mul_wide(self, x: u32) -> (Self, Self) {

@@ -9,7 +9,7 @@ use crate::learn::nn::Network;
 use crate::model::vehicle::Vehicle;
 use crate::present::run::{self, FoundPolicy};
 use crate::race::env::Race;
-use crate::race::env::reset::Place;
+use crate::race::env::reset::StartPlace;
 use crate::race::eval::pace::Pace;
 use crate::race::eval::{EvalConfig, Report, benchmark};
 use crate::race::snapshot::{About, Snapshot};
@@ -115,8 +115,8 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
     let fly = |place| benchmark(Level::best(), &race, &about.track, &network, place, &config).0;
     let report = threads::on(args.threads, || Report {
-        fixed: (args.start != Starts::Random).then(|| fly(Place::Pad)),
-        random: (args.start != Starts::Fixed).then(|| fly(Place::Spline)),
+        fixed: (args.start != Starts::Random).then(|| fly(StartPlace::Pad)),
+        random: (args.start != Starts::Fixed).then(|| fly(StartPlace::Spline)),
     })?;
     let pace = Pace::of(&report, &about.track, vehicle);
     let content = EvalDocument {

@@ -1,7 +1,7 @@
 //! A batch of vehicles without a race: struct of arrays in blocks of 16, on all cores.
 
 use crate::base::lane::{Kernel, LANES, Lane, Lane32, Level, Portable, build, dispatch};
-use crate::model::dynamics::{Craft, State};
+use crate::model::dynamics::Craft;
 use rayon::prelude::*;
 
 /// How a block rests in memory.
@@ -45,12 +45,25 @@ impl Batch {
         self.places.len()
     }
 
+    /// Flies `steps` steps with the commands `actions[i]` of vehicle `i` held, on the current rayon pool.
+    ///
+    /// # Panics
+    /// If there is not one action for each vehicle.
+    pub fn advance(&mut self, level: Level, actions: &[[f32; 4]], steps: usize) {
+        assert_eq!(actions.len(), self.len(), "one action for each vehicle");
+        self.blocks.par_iter_mut().for_each(|block| dispatch(level, Advance { block, actions, steps }));
+    }
+}
+
+/// What tests ask of a batch.
+#[cfg(feature = "internals")]
+impl Batch {
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
 
     /// State of vehicle `i`.
-    pub fn state(&self, i: usize) -> State<f32> {
+    pub fn state(&self, i: usize) -> crate::model::dynamics::State<f32> {
         let (block, lane) = self.places[i];
         self.blocks[block].craft.state.map(|x| x.get(lane))
     }
@@ -59,15 +72,6 @@ impl Batch {
     pub fn craft(&self, i: usize) -> Craft<f32> {
         let (block, lane) = self.places[i];
         self.blocks[block].craft.map(|x| x.get(lane))
-    }
-
-    /// Flies `steps` steps with the commands `actions[i]` of vehicle `i` held, on the current rayon pool.
-    ///
-    /// # Panics
-    /// If there is not one action for each vehicle.
-    pub fn advance(&mut self, level: Level, actions: &[[f32; 4]], steps: usize) {
-        assert_eq!(actions.len(), self.len(), "one action for each vehicle");
-        self.blocks.par_iter_mut().for_each(|block| dispatch(level, Advance { block, actions, steps }));
     }
 }
 

@@ -9,7 +9,7 @@ use crate::base::lane::Level;
 use crate::base::threads;
 use crate::model::vehicle::Vehicle;
 use crate::race::config::{DEFAULT, Setting, Setup};
-use crate::race::env::reset::Place;
+use crate::race::env::reset::StartPlace;
 use crate::race::eval::benchmark;
 use crate::race::eval::score::Benchmark;
 use crate::race::snapshot::Snapshot;
@@ -22,7 +22,7 @@ pub type Named<'a> = (&'static str, &'a Vehicle);
 pub fn fly(policy: &Snapshot, vehicle: &Vehicle) -> Result<Benchmark> {
     let about = &policy.about;
     let race = policy.race(Some(vehicle));
-    threads::on(None, || benchmark(Level::best(), &race, &about.track, &policy.network, Place::Pad, &about.eval).0)
+    threads::on(None, || benchmark(Level::best(), &race, &about.track, &policy.network, StartPlace::Pad, &about.eval).0)
 }
 
 /// Trains one policy in each of two vehicles for `minutes`, each in a folder of its name in the new folder `to`, and

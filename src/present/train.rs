@@ -13,7 +13,7 @@ use crate::learn::ppo::train::{Flow, Iteration, Observer};
 use crate::race::config::Setup;
 use crate::race::env::tally::Tally;
 use crate::race::eval::both_starts;
-use crate::race::eval::fly::Moment;
+use crate::race::eval::fly::TraceStep;
 use crate::race::snapshot::Snapshot;
 use crate::race::train::{TrainedPolicies, train};
 use std::time::SystemTime;
@@ -121,7 +121,7 @@ pub fn evaluate(
     setup: &Setup,
     policies: &[Snapshot],
     stop: &mut dyn FnMut() -> bool,
-) -> Option<Vec<(Evaluated, Vec<Moment>)>> {
+) -> Option<Vec<(Evaluated, Vec<TraceStep>)>> {
     let Setup { config, track, .. } = setup;
     let mut all = Vec::new();
     for policy in policies {

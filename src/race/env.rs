@@ -117,7 +117,8 @@ pub struct Block<R> {
 /// What a step did, before ended episodes are begun anew.
 #[derive(Clone, Copy, Debug)]
 pub struct Outcome<L: Lane> {
-    /// The reward by term.
+    /// The reward by term, which tests add up.
+    #[cfg_attr(not(feature = "internals"), allow(dead_code))]
     pub terms: [L; TERMS.len()],
     pub reward: L,
     /// Lanes that passed their gate, as bits, and when within the step they did, 0..1.

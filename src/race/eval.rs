@@ -12,8 +12,8 @@ use crate::base::lane::Level;
 use crate::learn::nn::Network;
 use crate::model::track::Track;
 use crate::race::env::Race;
-use crate::race::env::reset::Place;
-use fly::{Flights, Moment, fly};
+use crate::race::env::reset::StartPlace;
+use fly::{Flights, TraceStep, fly};
 use score::{Benchmark, score};
 use serde::{Deserialize, Serialize};
 
@@ -52,9 +52,9 @@ pub fn both_starts(
     track: &Track,
     network: &Network<f32>,
     config: &EvalConfig,
-) -> (Report, Vec<Moment>) {
-    let (fixed, flights) = benchmark(level, race, track, network, Place::Pad, config);
-    let (random, _) = benchmark(level, race, track, network, Place::Spline, config);
+) -> (Report, Vec<TraceStep>) {
+    let (fixed, flights) = benchmark(level, race, track, network, StartPlace::Pad, config);
+    let (random, _) = benchmark(level, race, track, network, StartPlace::Spline, config);
     (Report { fixed: Some(fixed), random: Some(random) }, flights.trace)
 }
 
@@ -64,7 +64,7 @@ pub fn benchmark(
     race: &Race,
     track: &Track,
     network: &Network<f32>,
-    place: Place,
+    place: StartPlace,
     config: &EvalConfig,
 ) -> (Benchmark, Flights) {
     let flights = fly(level, &race.scored(track), network, place, config.agents, config.max_steps as u32);

@@ -6,7 +6,7 @@ use crate::learn::nn::{Network, TILE_SAMPLES};
 use crate::learn::policy::ACTIONS;
 use crate::model::dynamics::{Craft, Factors};
 use crate::race::env::observe::OBSERVATIONS;
-use crate::race::env::reset::{self, Place};
+use crate::race::env::reset::{self, StartPlace};
 use crate::race::env::terminate::CAUSES;
 use crate::race::env::{Block, Race};
 
@@ -51,7 +51,7 @@ impl Kernel for Heat<'_> {
             // Lanes that nobody looks at fly as the first does.
             let vehicle = if lane < vehicles { first + lane } else { first };
             let mut rng = race.rng.sequence(Stream::Evaluation, vehicle as u32, 0);
-            let start = reset::draw(race, &mut rng, Place::Pad, (vehicle == 0).then_some(Factors::NOMINAL));
+            let start = reset::draw(race, &mut rng, StartPlace::Pad, (vehicle == 0).then_some(Factors::NOMINAL));
             block.begin(race, lane, &start);
             out.push(Raced { steps: Vec::new(), seen: Vec::new(), passes: Vec::new(), failure: None });
         }

@@ -9,7 +9,7 @@ use crate::model::attitude::body_axes;
 use crate::model::dynamics::Factors;
 use crate::race::config::Setup;
 use crate::race::env::observe::OBSERVATIONS;
-use crate::race::env::reset::{self, Place};
+use crate::race::env::reset::{self, StartPlace};
 use crate::race::env::tally::Tally;
 use crate::race::env::terminate::CAUSES;
 use crate::race::env::{Block, Race, lanes};
@@ -30,7 +30,7 @@ type Rest = Block<Portable<f32>>;
 pub struct Simulation {
     level: Level,
     race: Race,
-    place: Place,
+    place: StartPlace,
     vehicles: usize,
     blocks: Vec<Rest>,
 }
@@ -84,7 +84,7 @@ pub enum Ending {
 impl Simulation {
     /// So many vehicles at `place`, with the set-up's track, vehicle, rules and seed. Fails for none, or more than
     /// 2^24.
-    pub fn new(setup: &Setup, vehicles: usize, place: Place) -> Result<Self, BadInput> {
+    pub fn new(setup: &Setup, vehicles: usize, place: StartPlace) -> Result<Self, BadInput> {
         if !(1..=MOST).contains(&vehicles) {
             return Err(BadInput::new("a simulation", format!("{vehicles} vehicles"), &format!("1 to {MOST}"), ""));
         }
@@ -151,7 +151,7 @@ impl Simulation {
 }
 
 /// Begins a flight in `lane`.
-fn begin<L: Lane32>(race: &Race, place: Place, block: &mut Block<L>, lane: usize) {
+fn begin<L: Lane32>(race: &Race, place: StartPlace, block: &mut Block<L>, lane: usize) {
     let vehicle = block.first + lane as u32;
     let mut rng = race.rng.sequence(Stream::Reset, vehicle, block.step);
     let start = reset::draw(race, &mut rng, place, (vehicle == 0).then_some(Factors::NOMINAL));
@@ -177,7 +177,7 @@ impl Kernel for Observe<'_> {
 
 struct Step<'a> {
     race: &'a Race,
-    place: Place,
+    place: StartPlace,
     block: &'a mut Rest,
     commands: &'a [[f32; ACTIONS]],
     out: &'a mut [Transition],

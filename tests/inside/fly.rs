@@ -12,7 +12,7 @@ use racer::model::vehicle::Vehicle;
 use racer::race::config::Setup;
 use racer::race::env::Race;
 use racer::race::env::observe::OBSERVATIONS;
-use racer::race::env::reset::Place;
+use racer::race::env::reset::StartPlace;
 
 fn sensors(name: &str) -> SensorConfig {
     SensorConfig::load(name).expect("built in")
@@ -115,7 +115,7 @@ fn a_policy_flies_as_it_is_scored() {
     let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).expect("built in");
     let race = Race::new(&config.env, &track, &vehicle, 1).scored(&track);
     let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(Stream::Weights, 0, 0));
-    let scored = racer::race::eval::fly::fly(Level::best(), &race, &network, Place::Pad, 1, 300);
+    let scored = racer::race::eval::fly::fly(Level::best(), &race, &network, StartPlace::Pad, 1, 300);
     let flown = by_policy(Level::best(), &race, &network, &sensors("ideal"), 1, 3.0);
     assert_eq!(flown.log.setpoint.len(), scored.trace.len());
     assert_eq!(flown.failure.is_some(), scored.flights[0].failure.is_some());

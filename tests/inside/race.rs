@@ -8,7 +8,7 @@ use racer::model::vehicle::Vehicle;
 use racer::race::config::Config;
 use racer::race::env::gates::crossing;
 use racer::race::env::observe::{LAYOUT, OBSERVATIONS, layout};
-use racer::race::env::reset::{self, Place, Start};
+use racer::race::env::reset::{self, Start, StartPlace};
 use racer::race::env::reward::TERMS;
 use racer::race::env::terminate::CAUSES;
 use racer::race::env::{Block, Race};
@@ -147,7 +147,7 @@ fn starts() {
     let (race, track) = race("");
     let rng = Philox::new(3);
     for i in 0..5000 {
-        let start = reset::draw(&race, &mut rng.sequence(Stream::Reset, i, 0), Place::Spline, None);
+        let start = reset::draw(&race, &mut rng.sequence(Stream::Reset, i, 0), StartPlace::Spline, None);
         let p: nalgebra::Vector3<f64> = start.craft.state.position.into();
         assert!(track.volume.contains(&p), "{p}");
         let gate = &track.gates[start.target];
@@ -159,7 +159,7 @@ fn starts() {
         assert!(speed <= race.config.reset.speed_m_s[1]);
         assert!((22.2..24.0).contains(&start.craft.state.voltage));
     }
-    let pad = reset::draw(&race, &mut rng.sequence(Stream::Reset, 0, 0), Place::Pad, Some(Factors::NOMINAL));
+    let pad = reset::draw(&race, &mut rng.sequence(Stream::Reset, 0, 0), StartPlace::Pad, Some(Factors::NOMINAL));
     assert_eq!((pad.craft.state.position, pad.target, pad.craft.state.voltage), (track.start.position_m, 0, 24.0));
 }
 

@@ -16,7 +16,7 @@ use racer::present::report::replay::page;
 use racer::race::config::Setup;
 use racer::race::env::Race;
 use racer::race::env::observe::OBSERVATIONS;
-use racer::race::env::reset::Place;
+use racer::race::env::reset::StartPlace;
 use racer::race::eval::fly::fly;
 use racer::race::eval::spread::spread;
 use serde_json::Value;
@@ -79,7 +79,7 @@ fn figures_of_flights_are_drawn() {
     assert_eq!((spread.nominal.len() > 10, spread.randomised.len()), (true, 20));
     let figure = report::spread::svg(&track, &spread, "fixed starts").unwrap();
     assert!(figure.contains("20 randomised vehicles") && figure.contains("fixed starts"));
-    let trace = fly(Level::best(), &race.scored(&track), &network, Place::Pad, 1, 100).trace;
+    let trace = fly(Level::best(), &race.scored(&track), &network, StartPlace::Pad, 1, 100).trace;
     let [left, right] = ["weak", "strong"].map(|title| Commands { title, trace: &trace });
     let figure = report::commands::svg(&[left, right]).unwrap();
     assert!(["weak", "strong", "roll rate", "thrust", "time, s"].iter().all(|text| figure.contains(text)));

@@ -222,10 +222,6 @@ impl Word for Portable<u32> {
         Portable([x; LANES])
     }
     #[inline(always)]
-    fn wrapping_add(self, b: Self) -> Self {
-        Portable(from_fn(|i| self.0[i].wrapping_add(b.0[i])))
-    }
-    #[inline(always)]
     fn mul_wide(self, x: u32) -> (Self, Self) {
         let wide = self.0.map(|a| a as u64 * x as u64);
         (Portable(wide.map(|w| (w >> 32) as u32)), Portable(wide.map(|w| w as u32)))

@@ -246,14 +246,6 @@ impl Single for Avx512 {
         Self(unsafe { _mm512_scalef_ps(_mm512_set1_ps(1.0), self.0) })
     }
     #[inline(always)]
-    fn divide_fast(self, b: Self) -> Self {
-        // 14 bits from the table, 28 after one Newton step: a third of a division's time.
-        // SAFETY: see the module's page.
-        let guess = Self(unsafe { _mm512_rcp14_ps(b.0) });
-        let error = (-b).mul_add(guess, Self::one());
-        self * error.mul_add(guess, guess)
-    }
-    #[inline(always)]
     fn split_exponent(self) -> (Self, Self) {
         // SAFETY: see the module's page.
         unsafe {
@@ -472,11 +464,6 @@ impl Word for Avx512Bits {
         Self(unsafe { _mm512_set1_epi32(x as i32) })
     }
     #[inline(always)]
-    fn wrapping_add(self, b: Self) -> Self {
-        // SAFETY: see the module's page.
-        Self(unsafe { _mm512_add_epi32(self.0, b.0) })
-    }
-    #[inline(always)]
     fn mul_wide(self, x: u32) -> (Self, Self) {
         // The instruction multiplies the even lanes; the odd ones are shifted down for it.
         // SAFETY: see the module's page.
@@ -515,10 +502,6 @@ impl Word for Avx2Bits {
     fn splat(x: u32) -> Self {
         // SAFETY: see the module's page.
         Self([unsafe { _mm256_set1_epi32(x as i32) }; 2])
-    }
-    #[inline(always)]
-    fn wrapping_add(self, b: Self) -> Self {
-        Self(pair!(_mm256_add_epi32, self.0, b.0))
     }
     #[inline(always)]
     fn mul_wide(self, x: u32) -> (Self, Self) {

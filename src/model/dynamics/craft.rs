@@ -46,7 +46,8 @@ impl<R> Craft<R> {
         matches!(self.equations, Equations::Extended(_))
     }
 
-    /// The effects' numbers and what they remember, if there are effects.
+    /// The effects' numbers and what they remember, if there are effects: for tests.
+    #[cfg(feature = "internals")]
     pub fn extension(&mut self) -> Option<&mut (Extended<R>, Memory<R>)> {
         match &mut self.equations {
             Equations::Compact(_) => None,

@@ -3,14 +3,14 @@
 use super::drawing;
 use super::plot::{self, BLUE, ORANGE, TEXT};
 use crate::base::error::Result;
-use crate::race::eval::fly::{JUDGED_STEPS, Moment, SATURATED};
+use crate::race::eval::fly::{JUDGED_STEPS, SATURATED, TraceStep};
 use plotters::prelude::*;
 
 /// A flight and what to call it.
 #[derive(Clone, Copy, Debug)]
 pub struct Commands<'a> {
     pub title: &'a str,
-    pub trace: &'a [Moment],
+    pub trace: &'a [TraceStep],
 }
 
 const HEIGHT: u32 = 760;
@@ -62,8 +62,8 @@ pub fn svg(flights: &[Commands]) -> Result<String> {
 }
 
 /// Command `k` as it was held.
-fn steps(trace: &[Moment], k: usize) -> Vec<(f64, f64)> {
-    let command = |m: &Moment| f64::from([m.roll, m.pitch, m.yaw, m.thrust][k]);
+fn steps(trace: &[TraceStep], k: usize) -> Vec<(f64, f64)> {
+    let command = |m: &TraceStep| f64::from([m.roll, m.pitch, m.yaw, m.thrust][k]);
     let kept: Vec<_> = trace.iter().take_while(|m| m.time_s <= SECONDS).collect();
     let held = kept.windows(2).flat_map(|pair| [pair[0].time_s, pair[1].time_s].map(|time| (time, command(pair[0]))));
     held.collect()

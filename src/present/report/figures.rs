@@ -7,7 +7,7 @@ use crate::present::report::{lap, training};
 use crate::present::run::Run;
 use crate::present::run::evaluated::Evaluated;
 use crate::race::eval::Report;
-use crate::race::eval::fly::Moment;
+use crate::race::eval::fly::TraceStep;
 
 /// Traced flight of the nominal vehicle from the pad.
 pub const TRACE: &str = "lap.csv";
@@ -16,7 +16,7 @@ pub const LAP: &str = "lap.svg";
 pub const TRAINING: &str = "training.svg";
 
 /// Writes `lap.csv` and `lap.svg`.
-pub fn write_lap(run: &Run, track: &Track, trace: &[Moment], report: &Report) -> Result<()> {
+pub fn write_lap(run: &Run, track: &Track, trace: &[TraceStep], report: &Report) -> Result<()> {
     run.write(TRACE, encode::csv("the flown lap", |csv| trace.iter().try_for_each(|moment| csv.serialize(moment)))?)?;
     run.write(LAP, lap::svg(track, trace, &lap_title(track, report))?)?;
     Ok(())

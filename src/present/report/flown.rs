@@ -11,7 +11,7 @@ use crate::base::threads;
 use crate::present::run::metrics::METRICS;
 use crate::present::run::{evaluated, find, metrics};
 use crate::race::env::Race;
-use crate::race::eval::fly::Moment;
+use crate::race::eval::fly::TraceStep;
 use crate::race::eval::spread::spread;
 use crate::race::eval::{Report, both_starts};
 use crate::race::snapshot::Snapshot;
@@ -26,7 +26,7 @@ struct FlownRun {
     snapshot: Snapshot,
     race: Race,
     report: Report,
-    trace: Vec<Moment>,
+    trace: Vec<TraceStep>,
 }
 
 /// Page and figures of the run in `path`, with the commands of the one in `beside` next to its own.

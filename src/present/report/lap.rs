@@ -4,7 +4,7 @@ use super::map::{self, MapPoint};
 use super::plot;
 use crate::base::error::Result;
 use crate::model::track::Track;
-use crate::race::eval::fly::Moment;
+use crate::race::eval::fly::TraceStep;
 use crate::race::reference::Reference;
 
 const HEIGHT: u32 = 900;
@@ -12,8 +12,8 @@ const HEIGHT: u32 = 900;
 const SCALE: u32 = 110;
 
 /// An SVG of `trace` over the gates of `track`.
-pub fn svg(track: &Track, trace: &[Moment], title: &str) -> Result<String> {
-    let speed = |m: &Moment| f64::from(m.vx.powi(2) + m.vy.powi(2) + m.vz.powi(2)).sqrt();
+pub fn svg(track: &Track, trace: &[TraceStep], title: &str) -> Result<String> {
+    let speed = |m: &TraceStep| f64::from(m.vx.powi(2) + m.vy.powi(2) + m.vz.powi(2)).sqrt();
     let places = trace.iter().map(|m| ((f64::from(m.x), f64::from(m.y)), speed(m))).collect();
     draw(track, places, title)
 }

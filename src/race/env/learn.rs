@@ -1,7 +1,7 @@
 //! The race as the learner sees it.
 
 use super::observe::OBSERVATIONS;
-use super::reset::{self, Place};
+use super::reset::{self, StartPlace};
 use super::reward::TERMS;
 use super::tally::Tally;
 use super::{Block, Race, lanes};
@@ -88,7 +88,7 @@ impl Environment for Race {
 impl Race {
     fn restart<L: Lane32>(&self, block: &mut Block<L>, lane: usize) {
         let mut rng = self.rng.sequence(Stream::Reset, block.first + lane as u32, block.step);
-        let start = reset::draw(self, &mut rng, Place::Mixed, None);
+        let start = reset::draw(self, &mut rng, StartPlace::Mixed, None);
         block.begin(self, lane, &start);
     }
 }

@@ -49,7 +49,7 @@ pub struct Start {
 
 /// Where an episode begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum StartPlace {
     /// At rest on the start pad, nothing perturbed.
     Pad,
     /// Somewhere along the lap's spline, perturbed.
@@ -59,7 +59,7 @@ pub enum Place {
 }
 
 /// Draws the start of an episode at `place`; the vehicle's parameters are `factors`, or drawn.
-pub fn draw(race: &Race, rng: &mut Sequence, place: Place, factors: Option<Factors>) -> Start {
+pub fn draw(race: &Race, rng: &mut Sequence, place: StartPlace, factors: Option<Factors>) -> Start {
     let config = &race.config;
     let nominal = factors.is_some();
     let mut factors = factors.unwrap_or_else(|| config.randomize.draw(rng));
@@ -69,9 +69,9 @@ pub fn draw(race: &Race, rng: &mut Sequence, place: Place, factors: Option<Facto
         race.vehicle.battery.at(rng.uniform(config.randomize.charge))
     };
     let pad = match place {
-        Place::Pad => true,
-        Place::Spline => false,
-        Place::Mixed => rng.unit() < config.reset.pad_share,
+        StartPlace::Pad => true,
+        StartPlace::Spline => false,
+        StartPlace::Mixed => rng.unit() < config.reset.pad_share,
     };
     let (state, target) = if pad {
         let yaw = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), race.start.heading_rad());

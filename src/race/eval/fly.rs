@@ -5,7 +5,7 @@ use crate::base::rng::{Sequence, Stream};
 use crate::learn::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use crate::learn::policy::ACTIONS;
 use crate::model::dynamics::Factors;
-use crate::race::env::reset::{self, Place, Start};
+use crate::race::env::reset::{self, Start, StartPlace};
 use crate::race::env::terminate::CAUSES;
 use crate::race::env::{Block, Race, lanes};
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ impl Flight {
 
 /// One moment of a traced flight.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
-pub struct Moment {
+pub struct TraceStep {
     pub time_s: f64,
     pub x: f32,
     pub y: f32,
@@ -68,7 +68,7 @@ pub struct Moment {
 pub struct Flights {
     pub flights: Vec<Flight>,
     /// Agent 0, the nominal vehicle, step by step.
-    pub trace: Vec<Moment>,
+    pub trace: Vec<TraceStep>,
 }
 
 /// Which vehicles the agents fly.
@@ -82,7 +82,14 @@ pub enum Fleet<'a> {
 
 /// Flies `agents` agents from `place` for at most `max_steps` steps; agent 0 is nominal, the others draw every factor.
 /// Runs on the current rayon pool; the result does not depend on it.
-pub fn fly(level: Level, race: &Race, network: &Network<f32>, place: Place, agents: usize, max_steps: u32) -> Flights {
+pub fn fly(
+    level: Level,
+    race: &Race,
+    network: &Network<f32>,
+    place: StartPlace,
+    agents: usize,
+    max_steps: u32,
+) -> Flights {
     fly_fleet(level, race, network, place, Fleet::Randomised, agents, max_steps)
 }
 
@@ -91,7 +98,7 @@ pub fn fly_fleet(
     level: Level,
     race: &Race,
     network: &Network<f32>,
-    place: Place,
+    place: StartPlace,
     fleet: Fleet,
     agents: usize,
     max_steps: u32,
@@ -110,7 +117,7 @@ pub fn fly_fleet(
 }
 
 impl Fleet<'_> {
-    fn draw(&self, race: &Race, rng: &mut Sequence, place: Place, agent: usize) -> Start {
+    fn draw(&self, race: &Race, rng: &mut Sequence, place: StartPlace, agent: usize) -> Start {
         match *self {
             Fleet::Randomised => reset::draw(race, rng, place, (agent == 0).then_some(Factors::NOMINAL)),
             Fleet::Same(factors, charge) => {
@@ -125,7 +132,7 @@ impl Fleet<'_> {
 struct Fly<'a> {
     race: &'a Race,
     network: &'a Network<f32>,
-    place: Place,
+    place: StartPlace,
     fleet: Fleet<'a>,
     first: usize,
     agents: usize,
@@ -224,11 +231,11 @@ fn park<L: Lane32>(block: &mut Block<L>, over: u32) {
     }
 }
 
-fn moment<L: Lane32>(block: &Block<L>, action: [L; ACTIONS], time_s: f64) -> Moment {
+fn moment<L: Lane32>(block: &Block<L>, action: [L; ACTIONS], time_s: f64) -> TraceStep {
     let [x, y, z] = block.craft.state.position.map(|v| v.get(0));
     let [vx, vy, vz] = block.craft.state.velocity.map(|v| v.get(0));
     let [qw, qx, qy, qz] = block.craft.state.attitude.map(|v| v.get(0));
     let [roll, pitch, yaw, thrust] = action.map(|v| v.get(0));
     let (target_gate, voltage) = (block.target[0], block.craft.terminal_voltage().get(0));
-    Moment { time_s, x, y, z, vx, vy, vz, qw, qx, qy, qz, roll, pitch, yaw, thrust, target_gate, voltage }
+    TraceStep { time_s, x, y, z, vx, vy, vz, qw, qx, qy, qz, roll, pitch, yaw, thrust, target_gate, voltage }
 }

@@ -12,7 +12,7 @@ use crate::learn::nn::Network;
 use crate::model::dynamics::Factors;
 use crate::model::track::Track;
 use crate::race::env::Race;
-use crate::race::env::reset::Place;
+use crate::race::env::reset::StartPlace;
 use serde::Serialize;
 
 /// How a policy does as one parameter at a time is wrong.
@@ -63,7 +63,8 @@ pub fn sensitivity(
     let race = Race { noisy: true, ..race.scored(track) };
     let cell = |(factors, charge): (Factors, f64), value: f64| {
         let steps = config.max_steps as u32;
-        let flights = fly_fleet(level, &race, network, Place::Pad, Fleet::Same(&factors, charge), config.agents, steps);
+        let flights =
+            fly_fleet(level, &race, network, StartPlace::Pad, Fleet::Same(&factors, charge), config.agents, steps);
         let scored = score(track, &flights);
         Cell { value, completion: scored.lap_completion, lap_s: scored.lap_time_s.map(|time| time.median) }
     };

@@ -258,10 +258,6 @@ impl Word for Sse2Bits {
         Self([unsafe { _mm_set1_epi32(x as i32) }; 4])
     }
     #[inline(always)]
-    fn wrapping_add(self, b: Self) -> Self {
-        Self(quad!(_mm_add_epi32, self.0, b.0))
-    }
-    #[inline(always)]
     fn mul_wide(self, x: u32) -> (Self, Self) {
         // The instruction multiplies the even lanes; the odd ones are shifted down for it.
         // SAFETY: arithmetic in registers.
