@@ -1,5 +1,7 @@
 //! What flights say: whether a log is fit to learn from, the vehicle in it, and what the compact model gets wrong.
 
 pub mod diagnose;
+pub mod estimate;
 pub mod identify;
+pub mod prepare;
 pub mod quality;

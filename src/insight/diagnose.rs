@@ -2,7 +2,7 @@
 //!
 //! Flights are predicted by the simulator's own equations ([`predict`]) and held against the measurement by channel ([`problem`]). Every effect of the
 //! catalogue is a direction in which the prediction could change; a score test ranks them beside what the compact model's own numbers could take up
-//! ([`gram`], [`select`]), the best are fitted ([`fit`]), and what is found has to be evident, replicated, of a size that matters ([`judge`]) and
+//! ([`score`], [`select`]), the best are fitted ([`fit`]), and what is found has to be evident, replicated, of a size that matters ([`judge`]) and
 //! complete: nothing structured may be left ([`structure`]).
 
 // Samples, axes and channels index several arrays at once here.
@@ -18,7 +18,6 @@ pub mod figures;
 pub mod finding;
 pub mod fit;
 pub mod gain;
-pub mod gram;
 pub mod horizon;
 pub mod judge;
 pub mod kinematics;
@@ -31,6 +30,7 @@ pub mod problem;
 pub mod random;
 pub mod rank;
 pub mod record;
+pub mod score;
 pub mod select;
 pub mod skew;
 pub mod structure;
@@ -38,7 +38,7 @@ pub mod trial;
 pub mod whiten;
 
 use crate::base::stats::mean;
-use crate::insight::identify::data::Data;
+use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
 use crate::model::effects;
 use crate::model::vehicle::Vehicle;

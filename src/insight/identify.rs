@@ -5,11 +5,9 @@
 
 pub mod battery;
 pub mod bias;
-pub mod data;
 pub mod document;
 pub mod estimate;
 mod fill;
-pub mod flight;
 pub mod force;
 pub mod rates;
 pub mod refuse;
@@ -18,9 +16,9 @@ pub mod solve;
 
 use crate::base::check::{Check, Invalid};
 use crate::base::stats::quantile;
+use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
-use data::Data;
 use rayon::prelude::*;
 use result::Identification;
 

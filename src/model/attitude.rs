@@ -60,6 +60,21 @@ pub fn normalized<R: Real>(q: Quaternion<R>) -> Quaternion<R> {
     each!(q, |x| x * scale)
 }
 
+/// A vector of the body, in the world, by the body's axes there.
+#[inline(always)]
+pub fn in_world(axes: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| (0..3).map(|j| axes[j][k] * v[j]).sum())
+}
+
+/// The rotation vector of a rotation of at most half a turn, rad; of the two quaternions of a rotation, either will do.
+#[inline(always)]
+pub fn rotation_vector(q: Quaternion<f64>) -> [f64; 3] {
+    let sign = if q[0] < 0.0 { -1.0 } else { 1.0 };
+    let axis = q[1].hypot(q[2]).hypot(q[3]);
+    let scale = if axis > 1e-12 { 2.0 * axis.atan2(sign * q[0]) * sign / axis } else { 2.0 * sign };
+    [q[1] * scale, q[2] * scale, q[3] * scale]
+}
+
 /// The body's x, y and z axes in the world.
 #[inline(always)]
 pub fn body_axes<R: Real>(q: Quaternion<R>) -> [[R; 3]; 3] {

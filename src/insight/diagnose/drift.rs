@@ -2,11 +2,12 @@
 
 use super::finding::{Drift, Finding, Status, Value};
 use super::fit::{covariance, fit};
-use super::gram::{Grams, inverse};
 use super::judge::Judge;
 use super::model::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
 use super::problem::ChannelValues;
 use crate::base::stats::NORMAL_95;
+use crate::insight::estimate::gram::Grams;
+use crate::insight::estimate::inverse::inverse;
 use crate::model::effects::{self, Card};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;

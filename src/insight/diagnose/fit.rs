@@ -1,15 +1,19 @@
 //! Fitting numbers of the model to all flights: Gauss-Newton on whitened residuals, with derivatives that are used more than once.
 
-use super::gram::{Grams, inverse};
 use super::predict::CHANNELS;
 use super::problem::{ChannelValues, Predictions, Problem};
 use super::whiten::Whitener;
-use nalgebra::{DMatrix, DVector};
+use crate::insight::estimate::gram::Grams;
+use crate::insight::estimate::jackknife::jackknife;
+use crate::insight::estimate::least_squares::{Bounded, Normal, Shorter};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Steps with the same derivatives, and how often these are renewed.
 const CHORDS: usize = 4;
 const RENEWALS: usize = 3;
+/// Times that a step is halved.
+const HALVINGS: i32 = 5;
 /// A step that lowers the whitened squares by less than this ends the fit.
 const ENOUGH: f64 = 0.05;
 
@@ -67,10 +71,8 @@ pub fn fit(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) ->
             let gram = Grams::new(&white.iter().collect::<Vec<_>>(), &problem.rows, 1.max(problem.blocks)).sum;
             for _ in 0..CHORDS {
                 let whitened = whitener.apply(&residual, &problem.rows);
-                let Some(step) = step(problem, &gram, &white.iter().collect::<Vec<_>>(), &whitened, &x, free) else {
-                    break;
-                };
-                let Some(next) = descend(problem, whitener, (&state, &x), free, &step, cost.iter().sum()) else {
+                let normal = normal(problem, &gram, &white.iter().collect::<Vec<_>>(), &whitened, &x, free);
+                let Some(next) = descend(problem, whitener, (&state, &x), free, &normal, cost.iter().sum()) else {
                     break;
                 };
                 let gained = cost.iter().sum::<f64>() - next.cost.iter().sum::<f64>();
@@ -108,42 +110,23 @@ pub fn whitened_slopes(
     which.par_iter().map(|&k| whitener.apply(&problem.slope(state, x, k), &problem.rows)).collect()
 }
 
-/// The Gauss-Newton step; numbers at a bound that they push against stay.
-fn step(
+/// The normal equations of the numbers `free` at `x`, from their columns and what is left, all whitened; `gram` is that of the columns.
+fn normal<'a>(
     problem: &Problem,
-    gram: &DMatrix<f64>,
+    gram: &'a DMatrix<f64>,
     white: &[&ChannelValues],
-    residual: &ChannelValues,
+    left: &ChannelValues,
     x: &[f64],
     free: &[usize],
-) -> Option<Vec<f64>> {
-    let prior = prior(problem, free);
-    let right: Vec<f64> = (0..free.len())
-        .map(|j| {
-            let along: f64 =
-                (0..CHANNELS).map(|c| white[j][c].iter().zip(&residual[c]).map(|(a, b)| a * b).sum::<f64>()).sum();
-            along - prior[j] * (x[free[j]] - problem.model.base[free[j]])
-        })
-        .collect();
-    let mut moving: Vec<usize> = (0..free.len()).collect();
-    for _ in 0..3 {
-        let inner =
-            inverse(&Grams::pick(gram, &moving, &moving), &moving.iter().map(|&j| prior[j]).collect::<Vec<_>>())?;
-        let step = inner * DVector::from_iterator(moving.len(), moving.iter().map(|&j| right[j]));
-        let stuck = |a: usize| {
-            let (k, by) = (free[moving[a]], step[a]);
-            let n = &problem.model.numbers[k];
-            x[k] <= n.low && by < 0.0 || x[k] >= n.high && by > 0.0
-        };
-        let still: Vec<usize> = (0..moving.len()).filter(|&a| !stuck(a)).map(|a| moving[a]).collect();
-        if still.len() == moving.len() {
-            let mut out = vec![0.0; free.len()];
-            moving.iter().enumerate().for_each(|(a, &j)| out[j] = step[a]);
-            return Some(out);
-        }
-        moving = still;
-    }
-    None
+) -> Normal<'a> {
+    let ridge = prior(problem, free);
+    let along = |j: usize| -> f64 {
+        let channel = |c: usize| white[j][c].iter().zip(&left[c]).map(|(a, b)| a * b).sum::<f64>();
+        (0..CHANNELS).map(channel).sum()
+    };
+    let pull = |j: usize| ridge[j] * (x[free[j]] - problem.model.base[free[j]]);
+    let downhill = (0..free.len()).map(|j| along(j) - pull(j)).collect();
+    Normal { matrix: gram, downhill, ridge }
 }
 
 /// The point a step away, halved until it is better; none where no part of the step is.
@@ -152,27 +135,25 @@ fn descend(
     whitener: &Whitener,
     from: (&Predictions, &[f64]),
     free: &[usize],
-    step: &[f64],
+    normal: &Normal,
     before: f64,
 ) -> Option<FitPoint> {
     let (old, x) = from;
-    let before = before + penalty(problem, free, x);
-    for halving in 0..5 {
-        let share = 0.5f64.powi(halving);
+    let numbers = &problem.model.numbers;
+    let at: Vec<Bounded> =
+        free.iter().map(|&k| Bounded { value: x[k], low: numbers[k].low, high: numbers[k].high }).collect();
+    let squares = |values: &[f64]| {
         let mut next = x.to_vec();
-        for (&k, by) in free.iter().zip(step) {
-            let n = &problem.model.numbers[k];
-            next[k] = (x[k] + share * by).clamp(n.low, n.high);
-        }
+        free.iter().zip(values).for_each(|(&k, value)| next[k] = *value);
         let moved: Vec<usize> = free.iter().copied().filter(|&k| next[k] != x[k]).collect();
         let state = problem.change(old, &moved, &next);
         let residual = problem.residuals(&state);
         let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
-        if cost.iter().sum::<f64>() + penalty(problem, free, &next) < before {
-            return Some(FitPoint { x: next, state, free: Vec::new(), white: Vec::new(), residual, cost });
-        }
-    }
-    None
+        let total = cost.iter().sum::<f64>() + penalty(problem, free, &next);
+        (total, FitPoint { x: next, state, free: Vec::new(), white: Vec::new(), residual, cost })
+    };
+    let before = before + penalty(problem, free, x);
+    normal.descend(&at, Shorter::Halved(HALVINGS), before, squares).map(|(_, _, point)| point)
 }
 
 /// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken as they are there.
@@ -196,8 +177,8 @@ pub fn refit(problem: &Problem, whitener: &Whitener, point: &FitPoint, own: &[us
         let white: Vec<&ChannelValues> = kept.iter().map(|&j| &point.white[j]).chain(&mine).collect();
         let gram = Grams::new(&white, &problem.rows, problem.blocks).sum;
         let whitened = whitener.apply(&at.residual, &problem.rows);
-        let Some(step) = step(problem, &gram, &white, &whitened, &at.x, &free) else { break };
-        let Some(next) = descend(problem, whitener, (&at.state, &at.x), &free, &step, at.total()) else { break };
+        let normal = normal(problem, &gram, &white, &whitened, &at.x, &free);
+        let Some(next) = descend(problem, whitener, (&at.state, &at.x), &free, &normal, at.total()) else { break };
         let gained = at.total() - next.total();
         at = next;
         if gained < 1.0 {
@@ -213,7 +194,7 @@ pub fn refit(problem: &Problem, whitener: &Whitener, point: &FitPoint, own: &[us
 const GROUP: usize = 5;
 const GROUPS: usize = 20;
 
-/// Covariance of the fitted numbers of `point` by leaving out one stretch of time after the other (the cluster jackknife, CR3); wider where leaving out
+/// Covariance of the fitted numbers of `point` by leaving out one stretch of time after the other; wider where leaving out
 /// longer ones says so.
 pub fn covariance(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> Option<DMatrix<f64>> {
     let n = point.free.len();
@@ -222,21 +203,8 @@ pub fn covariance(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> O
     let grams = Grams::new(&columns, &problem.rows, problem.blocks);
     let prior = prior(problem, &point.free);
     let own: Vec<usize> = (0..n).collect();
-    let whole = Grams::pick(&grams.sum, &own, &own);
-    let everything = inverse(&whole, &prior)?;
-    let moved = |group: &[DMatrix<f64>]| {
-        let out = group.iter().fold(DMatrix::zeros(n + 1, n + 1), |sum, gram| sum + gram);
-        let u = Grams::pick(&out, &own, &[n]).column(0).into_owned();
-        (out[(n, n)] > 0.0)
-            .then(|| inverse(&(&whole - Grams::pick(&out, &own, &own)), &prior).unwrap_or(everything.clone()) * u)
-    };
-    let jackknife = |size: usize| {
-        let moves: Vec<DVector<f64>> = grams.blocks.par_chunks(size).filter_map(moved).collect();
-        let spread = moves.iter().fold(DMatrix::zeros(n, n), |sum, moved| sum + moved * moved.transpose());
-        (spread, moves.len())
-    };
-    let (single, _) = jackknife(1);
-    let (grouped, count) = jackknife(GROUP);
+    let (single, _) = jackknife(&grams, &own, n, &prior, 1)?;
+    let (grouped, count) = jackknife(&grams, &own, n, &prior, GROUP)?;
     if count < GROUPS {
         return Some(single);
     }

@@ -10,7 +10,7 @@ use super::select::{self, Selection};
 use super::structure::NAMES;
 use super::whiten::Whitener;
 use crate::base::stats::mean;
-use crate::insight::identify::data::TRAIN_SHARE;
+use crate::insight::prepare::data::TRAIN_SHARE;
 use std::collections::BTreeMap;
 
 /// Whitened squares over those that are left at least, from which on there is something to gain.

@@ -2,14 +2,16 @@
 
 use super::finding::{Finding, Status, Value};
 use super::fit::{FitPoint, covariance};
-use super::gram::{Grams, inverse, score};
 use super::horizon;
 use super::model::{TAU, span};
 use super::predict::{CHANNELS, kind};
 use super::problem::{ChannelValues, Problem};
+use super::score::score;
 use super::select::{Added, Selection};
 use super::structure::NAMES;
 use crate::base::stats::{NORMAL_95, mean};
+use crate::insight::estimate::gram::Grams;
+use crate::insight::estimate::inverse::inverse;
 use crate::model::constants::GRAVITY_M_S2;
 use crate::model::effects::{Card, EffectKind};
 use nalgebra::{DMatrix, DVector};

@@ -3,7 +3,7 @@
 use super::model::Model;
 use super::record::FlightRecord;
 use crate::base::lane::build;
-use crate::model::attitude::{Quaternion, body_axes, compose, normalized, small_rotation};
+use crate::model::attitude::{Quaternion, body_axes, compose, in_world, normalized, rotation_vector, small_rotation};
 use crate::model::dynamics::extended;
 use crate::model::effects::{self, Sensed};
 
@@ -52,7 +52,7 @@ pub fn integrate(model: &Model, record: &FlightRecord, x: &[f64], command: &[[f6
             }
             (0..3).for_each(|j| pushed[j] += h * push[j]);
         }
-        let rotated = vector(turn);
+        let rotated = rotation_vector(turn);
         for j in 0..3 {
             out[j].push(rotated[j]);
             if record.moves {
@@ -61,21 +61,6 @@ pub fn integrate(model: &Model, record: &FlightRecord, x: &[f64], command: &[[f6
         }
     }
     out
-}
-
-/// A vector of the body, in the world.
-#[inline(always)]
-pub fn in_world(axes: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| (0..3).map(|j| axes[j][k] * v[j]).sum())
-}
-
-/// The rotation vector of a rotation of less than half a turn, rad.
-#[inline(always)]
-pub fn vector(q: Quaternion<f64>) -> [f64; 3] {
-    let sign = if q[0] < 0.0 { -1.0 } else { 1.0 };
-    let axis = q[1].hypot(q[2]).hypot(q[3]);
-    let scale = if axis > 1e-12 { 2.0 * axis.atan2(sign * q[0]) * sign / axis } else { 2.0 * sign };
-    [q[1] * scale, q[2] * scale, q[3] * scale]
 }
 
 /// The truth behind a reading of rates and specific force: what the sensors make of it is small, so that two rounds of correction are enough.

@@ -4,8 +4,11 @@
 use super::predict::FORCE;
 use super::problem::{ChannelValues, Problem, ResidualRow};
 use super::record::BIN_S;
+use crate::insight::estimate::robust::capped;
 use std::ops::RangeInclusive;
 
+/// Residuals are capped at so many standard deviations.
+const CAP: f64 = 6.0;
 /// Half periods that are looked for, in bins: 10 Hz to 0.8 Hz.
 const HALF: RangeInclusive<usize> = 5..=60;
 /// Stretches of time that have to agree on the first and on the second half period.
@@ -47,8 +50,7 @@ pub fn find(problem: &Problem, residual: &ChannelValues) -> Vec<Oscillation> {
 
 /// Share of the residual's power that swings, and what the swing is called.
 fn swing(residual: &[f64], rows: &[ResidualRow], blocks: usize) -> Option<(f64, &'static str)> {
-    let cap = 6.0 * crate::base::stats::robust_sd(residual);
-    let y: Vec<f64> = residual.iter().map(|r| r.clamp(-cap, cap)).collect();
+    let y = capped(residual, CAP, 0.0);
     // Products with what was so many bins before, by stretch of time.
     let products = |lag: usize| {
         let mut sums = vec![0.0; blocks];

@@ -1,13 +1,13 @@
 //! What the model says the sensors of a flight should have read: the same stages as the simulator's, driven by the log.
 
 use super::actuator_response::{ActuatorResponse, actuator_response, body_rates, supplied};
-use super::kinematics::{self, in_world, lagged, slopes, vector};
+use super::kinematics::{self, lagged, slopes};
 use super::model::{BEGIN, Model, Stage};
 use super::record::FlightRecord;
 use crate::base::lane::{Kernel, Lane32, Level, build, dispatch};
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::period;
-use crate::model::attitude::{compose, dot};
+use crate::model::attitude::{compose, dot, in_world, rotation_vector};
 use crate::model::dynamics::battery::discharged;
 use crate::model::dynamics::extended::{self, Extended, ForceInputs};
 use crate::model::effects::{self, ResidualChannel, Sensed};
@@ -267,7 +267,7 @@ pub fn measured(record: &FlightRecord, gravity: f64) -> [Vec<f64>; CHANNELS] {
     }
     for &[from, to] in &record.windows {
         let [w, a, b, c] = record.attitude[from];
-        let turn = vector(compose([w, -a, -b, -c], record.attitude[to]));
+        let turn = rotation_vector(compose([w, -a, -b, -c], record.attitude[to]));
         let velocity = |i: usize| in_world(&record.axes[i], std::array::from_fn(|k| record.velocity[k][i]));
         let (v0, v1) = (velocity(from), velocity(to));
         let mut gained: [f64; 3] = std::array::from_fn(|k| v1[k] - v0[k]);

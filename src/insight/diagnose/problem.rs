@@ -3,6 +3,7 @@
 use super::model::Model;
 use super::predict::{CHANNELS, Predicted, measured};
 use super::record::FlightRecord;
+use crate::insight::estimate::gram::Stretch;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -20,7 +21,13 @@ pub struct ResidualRow {
     pub follows: bool,
 }
 
-/// ChannelValues by channel; empty where there is nothing.
+impl Stretch for ResidualRow {
+    fn stretch(&self) -> u32 {
+        self.block
+    }
+}
+
+/// Values by channel; empty where there is nothing.
 pub type ChannelValues = [Vec<f64>; CHANNELS];
 
 /// Flights and the model they are held against.

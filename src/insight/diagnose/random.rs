@@ -5,6 +5,8 @@ use super::predict::{FORCE, RATE};
 use super::problem::Problem;
 use super::select::Selection;
 use crate::base::stats::{NORMAL_95, mean, robust_sd};
+use crate::insight::estimate::robust::capped;
+use crate::model::dynamics::response::alpha;
 use crate::model::effects::{self, Card};
 use std::collections::BTreeMap;
 
@@ -12,6 +14,8 @@ use std::collections::BTreeMap;
 const REPLICATED: f64 = 15.0;
 /// Smallest gust that is worth a word, m/s2.
 const LEAST_GUST: f64 = 0.08;
+/// Residuals are capped at so many standard deviations.
+const CAP: f64 = 6.0;
 /// Lags between which the memory of gusts is looked for, in bins.
 const LAGS: [usize; 2] = [6, 18];
 
@@ -59,7 +63,7 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
                     continue;
                 }
                 let (begin, held) = (pair[1].0 + late[axis], pair[1].0 - pair[0].0);
-                let rise = |t: f64| if t > 0.0 { 1.0 - (-t / tau).exp() } else { 0.0 };
+                let rise = |t: f64| if t > 0.0 { alpha(tau, t) } else { 0.0 };
                 let first = middles.partition_point(|t| *t < begin);
                 let (mut along, mut square) = (0.0, 0.0);
                 for bin in first..middles.len().min(first + 3) {
@@ -112,14 +116,13 @@ pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Op
         if rows.len() < 1000 {
             return None;
         }
-        let cap = 6.0 * robust_sd(residual);
-        let y = |i: usize| residual[i].clamp(-cap, cap);
+        let y = capped(residual, CAP, 0.0);
         for (which, lag) in LAGS.into_iter().enumerate() {
             let mut blocks = vec![0.0; problem.blocks];
             let mut n = 0.0;
             for i in lag..rows.len() {
                 if rows[i].flight == rows[i - lag].flight && rows[i].index == rows[i - lag].index + lag as u32 {
-                    blocks[rows[i].block as usize] += y(i) * y(i - lag);
+                    blocks[rows[i].block as usize] += y[i] * y[i - lag];
                     n += 1.0;
                 }
             }

@@ -2,9 +2,10 @@
 
 use super::candidates::Candidate;
 use super::fit::FitPoint;
-use super::gram::{Grams, score};
 use super::problem::{ChannelValues, Problem};
+use super::score::score;
 use super::whiten::Whitener;
+use crate::insight::estimate::gram::Grams;
 use crate::model::effects::Card;
 use rayon::prelude::*;
 

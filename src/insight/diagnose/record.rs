@@ -2,8 +2,9 @@
 
 use crate::base::stats::quantile;
 use crate::flight::Log;
-use crate::flight::series::{interpolated, last_at, period};
-use crate::insight::identify::flight::Flight;
+use crate::flight::series::{last_at, period};
+use crate::insight::prepare::flight::Flight;
+use crate::insight::prepare::windows::{often_enough, windows};
 use crate::insight::quality::Quality;
 use crate::model::attitude::{Quaternion, body_axes};
 use crate::model::vehicle::Vehicle;
@@ -12,8 +13,6 @@ use crate::model::vehicle::Vehicle;
 pub const BIN_S: f64 = 0.01;
 /// Length of the stretches over which turns and pushes are compared, s.
 const OVER_S: f64 = 0.25;
-/// Odometry slower than this is not integrated over, Hz.
-const LEAST_RATE_HZ: f64 = 40.0;
 
 /// The IMU is thinned to about this rate for the residuals of rates and forces, Hz: what more of it says is the same again. What is
 /// integrated stays whole.
@@ -78,11 +77,7 @@ impl FlightRecord {
         let fine = Fine { time: flight.time.clone(), imu: std::array::from_fn(|k| flight.measured(k)), every };
         let time = thin(&flight.time);
         let usable: Vec<bool> = flight.usable.iter().copied().step_by(every).collect();
-        let odometry = &log.odometry;
-        let at = |k: usize| interpolated(&odometry.time_s, &odometry.column(k), &time, 0.25);
-        let q: [Vec<f64>; 4] = std::array::from_fn(|k| signed_attitude(odometry, k, &time));
-        let attitude: Vec<Quaternion<f64>> =
-            (0..time.len()).map(|i| unit([q[0][i], q[1][i], q[2][i], q[3][i]])).collect();
+        let attitude: Vec<Quaternion<f64>> = flight.attitude.iter().copied().step_by(every).collect();
         let turns = attitude.iter().any(|q| q[0].is_finite());
         let level = [1.0, 0.0, 0.0, 0.0];
         let attitude: Vec<_> = if turns { attitude } else { vec![level; time.len()] };
@@ -93,7 +88,7 @@ impl FlightRecord {
         } else {
             std::array::from_fn(|_| vec![0.0; time.len()])
         };
-        let position: [Vec<f64>; 3] = std::array::from_fn(at);
+        let position: [Vec<f64>; 3] = std::array::from_fn(|k| thin(&flight.position[k]));
         let finite: Vec<f64> = position[2].iter().copied().filter(|z| z.is_finite()).collect();
         let ground = quantile(&finite, 0.002);
         let height = position[2].iter().map(|z| if ground.is_finite() { z - ground } else { 1e3 }).collect();
@@ -124,7 +119,7 @@ impl FlightRecord {
             time,
         };
         out.bins = out.divide(BIN_S.max(period(&out.time) * 0.99));
-        if turns && !odometry.is_empty() && 1.0 / period(&odometry.time_s) >= LEAST_RATE_HZ {
+        if turns && often_enough(&log.odometry) {
             out.windows = out.stretches();
         }
         out
@@ -145,21 +140,9 @@ impl FlightRecord {
     }
 
     fn stretches(&self) -> Vec<[usize; 2]> {
-        let mut out = Vec::new();
-        let mut from = 0;
-        while from < self.time.len() {
-            let to = self.time.partition_point(|&t| t < self.time[from] + OVER_S);
-            if to >= self.time.len() {
-                break;
-            }
-            let whole =
-                (from..=to).all(|i| self.usable[i]) && [from, to].iter().all(|&i| self.attitude[i][0].is_finite());
-            if whole {
-                out.push([from, to]);
-            }
-            from = to;
-        }
-        out
+        let usable = |[from, to]: [usize; 2]| (from..=to).all(|i| self.usable[i]);
+        let known = |ends: [usize; 2]| ends.iter().all(|&i| self.attitude[i][0].is_finite());
+        windows(&self.time, OVER_S, |ends| usable(ends) && known(ends))
     }
 
     /// When the flight begins, s.
@@ -182,32 +165,6 @@ fn from_rotors(log: &Log) -> bool {
     let finite: Vec<f64> = ratios.into_iter().filter(|r| r.is_finite()).collect();
     let middle = crate::base::stats::median(&finite);
     finite.len() > 100 && finite.iter().filter(|r| (*r / middle - 1.0).abs() < 1e-6).count() > finite.len() * 9 / 10
-}
-
-/// Component `k` of the attitude at `times`, of quaternions whose signs do not jump.
-fn signed_attitude(odometry: &crate::flight::Stream<10>, k: usize, times: &[f64]) -> Vec<f64> {
-    let mut sign = 1.0;
-    let mut before: Option<[f64; 4]> = None;
-    let mut column = Vec::with_capacity(odometry.len());
-    for row in &odometry.rows {
-        let q = [row[3], row[4], row[5], row[6]];
-        if let Some(b) = before {
-            let along: f64 = (0..4).map(|i| q[i] * b[i]).sum();
-            if along < 0.0 {
-                sign = -sign;
-            }
-        }
-        if q.iter().all(|x| x.is_finite()) {
-            before = Some(q);
-        }
-        column.push(sign * q[k]);
-    }
-    interpolated(&odometry.time_s, &column, times, 0.1)
-}
-
-fn unit(q: [f64; 4]) -> [f64; 4] {
-    let norm = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if norm > 0.5 { q.map(|x| x / norm) } else { [f64::NAN; 4] }
 }
 
 /// Commands as shares of what a full stick asks for; what was not commanded is 0.

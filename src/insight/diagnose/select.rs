@@ -2,13 +2,13 @@
 
 use super::candidates::{Candidate, base_numbers, candidates, causes, renewed};
 use super::fit::{self, FitPoint};
-use super::gram::Grams;
 use super::judge::is_material;
 use super::model::span;
 use super::problem::{ChannelValues, Problem};
 use super::rank::{Reach, rank};
 use super::trial::{rivals, tied, try_best};
 use super::whiten::Whitener;
+use crate::insight::estimate::gram::Grams;
 use crate::model::effects::Card;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -178,5 +178,5 @@ fn together(grams: &Grams) -> Option<(DMatrix<f64>, usize)> {
     let square = Grams::pick(&grams.sum, &own, &own);
     // Columns at several sizes of one effect are nearly the same: a small ridge decides among them.
     let ridge: Vec<f64> = (0..n).map(|i| 1e-4 * square[(i, i)] + 1e-12).collect();
-    Some((super::gram::inverse(&square, &ridge)? * Grams::pick(&grams.sum, &own, &[n]), n))
+    Some((crate::insight::estimate::inverse::inverse(&square, &ridge)? * Grams::pick(&grams.sum, &own, &[n]), n))
 }

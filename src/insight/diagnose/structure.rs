@@ -4,6 +4,8 @@
 use super::predict::{CHANNELS, FORCE, RATE, VOLTAGE};
 use super::problem::{ChannelValues, Predictions, Problem};
 use crate::base::stats::quantile;
+use crate::insight::estimate::autoregression::autoregression;
+use crate::insight::estimate::robust::capped;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -14,6 +16,11 @@ const BINS: usize = 8;
 const FOLDS: u32 = 6;
 /// Stretches of time to a fold's piece, so that each fold holds early and late flight.
 const PIECE: u32 = 3;
+
+/// Residuals are capped at so many standard deviations.
+const CAP: f64 = 5.0;
+/// Values before a residual that may tell it.
+const MEMORY: usize = 6;
 
 /// A signal that the simulation knows: no measurement that enters the residual is among them.
 pub struct Feature {
@@ -96,8 +103,8 @@ impl Structure {
 fn one(problem: &Problem, state: &Predictions, c: usize, residual: &[f64]) -> Structure {
     let features = features(problem, state, c);
     let fold: Vec<u32> = problem.rows[c].iter().map(|row| fold(row.block)).collect();
-    let cap = 5.0 * crate::base::stats::robust_sd(residual).max(1e-12);
-    let y: Vec<f64> = residual.iter().map(|r| r.clamp(-cap, cap)).collect();
+    let y = capped(residual, CAP, 1e-12);
+    let coloured = autoregression(&y, |i| problem.rows[c][i].follows, MEMORY);
     let power = crate::base::stats::mean(&y.iter().map(|y| y * y).collect::<Vec<_>>());
     let all: Vec<&Feature> = features.iter().collect();
     // A shifted residual has the same colour and no structure: what it seems to have is chance.
@@ -126,7 +133,7 @@ fn one(problem: &Problem, state: &Predictions, c: usize, residual: &[f64]) -> St
         unit,
         rms: crate::base::stats::mean(&residual.iter().map(|r| r * r).collect::<Vec<_>>()).sqrt(),
         structure_rms: (share * power).sqrt(),
-        coloured_rms: (coloured(problem, c, &y) * power).sqrt(),
+        coloured_rms: (coloured.predicted * power).sqrt(),
         along: along.map(|f| f.name),
         along_share,
         curve: along.map_or(Vec::new(), |f| curve(f, &y)),
@@ -187,26 +194,6 @@ fn explained(features: &[&Feature], y: &[f64], fold: &[u32]) -> f64 {
         total += y[i] * y[i];
     }
     1.0 - left / total.max(1e-300)
-}
-
-/// Share of a channel's power that its own past predicts.
-fn coloured(problem: &Problem, c: usize, y: &[f64]) -> f64 {
-    let rows = &problem.rows[c];
-    let order = 6;
-    let (mut m, mut r) = (DMatrix::<f64>::zeros(order, order), DVector::<f64>::zeros(order));
-    let (mut run, mut total) = (0, 0.0);
-    for i in 0..y.len() {
-        run = if rows[i].follows { run + 1 } else { 0 };
-        if run >= order {
-            total += y[i] * y[i];
-            for a in 0..order {
-                r[a] += y[i] * y[i - 1 - a];
-                (0..order).for_each(|b| m[(a, b)] += y[i - 1 - a] * y[i - 1 - b]);
-            }
-        }
-    }
-    (0..order).for_each(|a| m[(a, a)] += 1e-6 * total + 1e-300);
-    m.cholesky().map_or(0.0, |cholesky| (cholesky.solve(&r).dot(&r) / total.max(1e-300)).clamp(0.0, 1.0))
 }
 
 /// Signals at the rows of channel `c`, cut into levels.

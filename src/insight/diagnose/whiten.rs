@@ -4,12 +4,16 @@
 use super::predict::CHANNELS;
 use super::problem::{ChannelValues, ResidualRow};
 use crate::base::stats::robust_sd;
-use nalgebra::{DMatrix, DVector};
+use crate::insight::estimate::autoregression::autoregression;
+use crate::insight::estimate::robust::{capped, huber};
 
 /// Order of the autoregressive model: rates and forces, turns and pushes, voltage.
 const ORDER: [usize; 3] = [8, 3, 4];
-/// Whitened residuals beyond so many standard deviations weigh less (Huber).
+/// Whitened residuals beyond so many standard deviations weigh less (Huber). Wider than identification's 3: an effect that is rarely flown
+/// stands out of the noise as outliers do.
 const HUBER: f64 = 3.5;
+/// Rows are capped at so many standard deviations before their memory is fitted.
+const CAP: f64 = 6.0;
 /// Largest sum of the coefficients: a constant residual keeps at least what is left to 1 of its size.
 const MOST_MEMORY: f64 = 0.6;
 /// Rows below which a channel is left out.
@@ -43,13 +47,13 @@ impl Whitener {
 
     /// From residuals in which no structure is left. `other` is a unit for channels without any.
     pub fn of(noise: &ChannelValues, rows: &[Vec<ResidualRow>; CHANNELS]) -> Self {
-        let filter = std::array::from_fn(|c| autoregression(&noise[c], &rows[c], order(c)));
+        let filter = std::array::from_fn(|c| memory(&noise[c], &rows[c], order(c)));
         let mut out = Whitener { filter, weight: std::array::from_fn(|c| vec![1.0; rows[c].len()]) };
         let white = out.apply(noise, rows);
         for c in 0..CHANNELS {
             let sd = robust_sd(&white[c]).max(1e-12);
             out.filter[c].1 /= sd;
-            let weigh = |w: &f64| (HUBER * sd / w.abs().max(1e-12)).min(1.0).sqrt();
+            let weigh = |w: &f64| huber(w / sd, HUBER).sqrt();
             out.weight[c] = if rows[c].len() < LEAST_ROWS {
                 vec![0.0; rows[c].len()]
             } else {
@@ -93,35 +97,15 @@ impl Whitener {
     }
 }
 
-/// Least squares of each row on those before it; one over the standard deviation of what is left.
-fn autoregression(x: &[f64], rows: &[ResidualRow], order: usize) -> (Vec<f64>, f64) {
-    let mut normal = DMatrix::<f64>::zeros(order, order);
-    let mut right = DVector::<f64>::zeros(order);
+/// What of each row the rows before it tell, and one over the standard deviation of the rows.
+fn memory(x: &[f64], rows: &[ResidualRow], order: usize) -> (Vec<f64>, f64) {
     // Outliers would make any noise look like a random walk.
-    let cap = 6.0 * robust_sd(x);
-    let at = |i: usize| x[i].clamp(-cap, cap);
-    let mut run = 0;
-    let mut power = 0.0;
-    for i in 0..x.len() {
-        run = if rows[i].follows { run + 1 } else { 0 };
-        power += at(i) * at(i);
-        if run >= order {
-            for a in 0..order {
-                right[a] += at(i) * at(i - 1 - a);
-                for b in 0..=a {
-                    normal[(a, b)] += at(i - 1 - a) * at(i - 1 - b);
-                }
-            }
-        }
-    }
-    let ridge = 1e-6 * power + 1e-300;
-    let full = DMatrix::from_fn(order, order, |a, b| normal[(a.max(b), a.min(b))] + if a == b { ridge } else { 0.0 });
-    let mut past: Vec<f64> = full.cholesky().map_or(vec![0.0; order], |c| c.solve(&right).iter().copied().collect());
+    let found = autoregression(&capped(x, CAP, 0.0), |i| rows[i].follows, order);
+    let mut past = found.past;
     // What measured flights leave is so slow that its whitening would discard everything slow, the causes with it.
     let memory: f64 = past.iter().sum();
     if memory > MOST_MEMORY {
         past.iter_mut().for_each(|a| *a *= MOST_MEMORY / memory);
     }
-    let sd = (power / x.len().max(1) as f64).sqrt();
-    (past, 1.0 / sd.max(1e-12))
+    (past, 1.0 / found.power.sqrt().max(1e-12))
 }

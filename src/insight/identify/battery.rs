@@ -1,9 +1,9 @@
 //! Discharge: a line through the voltage in flight.
 
-use super::data::{Data, Part};
 use super::rates::{Compared, times};
 use super::solve::{Solution, Unknown, solve};
 use crate::flight::series::last_at;
+use crate::insight::prepare::data::{Data, Part};
 use crate::model::dynamics::battery::discharged;
 
 /// Order of the unknowns: rate (V/s), then the voltage at the beginning of each flight (V).

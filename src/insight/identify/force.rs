@@ -1,9 +1,9 @@
 //! Thrust and drag together, from the specific force along all three body axes (paper Eq. 6, 7 and 9).
 
-use super::data::{Chosen, Data, Part};
 use super::rates::{Compared, TAU_S, TAUS_S, times};
 use super::solve::{Solution, Unknown, solve};
 use crate::base::stats::mean;
+use crate::insight::prepare::data::{Chosen, Data, Part};
 use crate::model::dynamics::force_in_body;
 use crate::model::thrust::specific_thrust;
 use nalgebra::{DMatrix, DVector};

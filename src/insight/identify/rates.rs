@@ -1,8 +1,8 @@
 //! One rate axis: time constant, gain and offset of its first-order response (paper Eq. 6 and section 4.1).
 
-use super::data::{Chosen, Data, Part};
 use super::solve::{Solution, Unknown, solve};
 use crate::base::stats::{Score, mean};
+use crate::insight::prepare::data::{Chosen, Data, Part};
 
 /// Bounds of every time constant, s.
 pub const TAU_S: [f64; 2] = [0.0005, 0.3];

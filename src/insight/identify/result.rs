@@ -1,11 +1,11 @@
 //! What an identification found: the vehicle, and everything to judge it by.
 
-use super::data::Data;
 use super::estimate::Estimate;
 use super::rates::Compared;
 use super::{AXES, Options, fastest};
 use crate::base::stats::Score;
 use crate::flight::spans::Span;
+use crate::insight::prepare::data::Data;
 use crate::model::vehicle::{Identified, LogSpan, Vehicle};
 use serde::Serialize;
 

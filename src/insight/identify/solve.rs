@@ -1,11 +1,15 @@
 //! Bounded nonlinear least squares with robust weights, and intervals that hold for coloured noise.
 
 use crate::base::stats::{NORMAL_95, robust_sd};
-use nalgebra::{DMatrix, DVector};
+use crate::insight::estimate::gram::Grams;
+use crate::insight::estimate::jackknife::jackknife;
+use crate::insight::estimate::least_squares::{Bounded, Normal, Shorter};
+use crate::insight::estimate::robust::huber;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-/// Residuals beyond so many standard deviations weigh less (Huber).
+/// Residuals beyond so many standard deviations weigh less (Huber): next to nothing of normal noise, all of a glitch.
 const HUBER: f64 = 3.0;
 /// Most steps, each with new weights, and the relative gain below which they end.
 const STEPS: usize = 25;
@@ -43,14 +47,13 @@ impl Solution {
     }
 }
 
+/// Residuals of each channel at these values.
+pub type Residuals<'a> = dyn Fn(&[f64]) -> Vec<Vec<f64>> + Sync + 'a;
+
 /// Minimises the weighted squares of `residuals(values)`: channels of equally many samples. `blocks` numbers the stretch of
 /// time of each sample: residuals of different stretches are taken for independent, those of one are not.
 /// `None` where there are fewer stretches than unknowns, or the residuals are not finite.
-pub fn solve(
-    unknowns: &[Unknown],
-    blocks: &[u32],
-    residuals: &(dyn Fn(&[f64]) -> Vec<Vec<f64>> + Sync),
-) -> Option<Solution> {
+pub fn solve(unknowns: &[Unknown], blocks: &[u32], residuals: &Residuals) -> Option<Solution> {
     let stretches = blocks.iter().collect::<BTreeSet<_>>().len();
     if stretches <= unknowns.len() {
         return None;
@@ -59,14 +62,15 @@ pub fn solve(
     let mut damping = 1e-6;
     for _ in 0..STEPS {
         let weights = Weights::of(&residuals(&values))?;
-        let system = System::at(unknowns, &values, &weights, residuals)?;
-        if !descend(unknowns, &mut values, &mut damping, &system, residuals) {
+        let system = System::at(unknowns, &values, &weights, blocks, residuals)?;
+        let cost = |x: &[f64]| weights.cost(&residuals(x));
+        if !system.descend(unknowns, &mut values, &mut damping, &cost) {
             break;
         }
     }
     let weights = Weights::of(&residuals(&values))?;
-    let system = System::at(unknowns, &values, &weights, residuals)?;
-    let (covariance, at_bound) = system.jackknife(unknowns, &values, blocks)?;
+    let system = System::at(unknowns, &values, &weights, blocks, residuals)?;
+    let (covariance, at_bound) = system.covariance(unknowns, &values)?;
     Some(Solution { values, covariance, at_bound, noise: weights.noise })
 }
 
@@ -82,9 +86,7 @@ impl Weights {
         if noise.iter().any(|sd| !sd.is_finite()) {
             return None;
         }
-        let weigh = |(r, sd): (&Vec<f64>, &f64)| {
-            r.iter().map(|r| (HUBER * sd / r.abs()).min(1.0) / (sd * sd)).collect::<Vec<_>>()
-        };
+        let weigh = |(r, sd): (&Vec<f64>, &f64)| r.iter().map(|r| huber(r / sd, HUBER) / (sd * sd)).collect::<Vec<_>>();
         Some(Weights { of: residuals.iter().zip(&noise).map(weigh).collect(), noise })
     }
 
@@ -92,149 +94,101 @@ impl Weights {
         let channel = |(r, w): (&Vec<f64>, &Vec<f64>)| r.iter().zip(w).map(|(r, w)| w * r * r).sum::<f64>();
         residuals.iter().zip(&self.of).map(channel).sum()
     }
+
+    /// `values` by channel, times the square roots of the weights.
+    fn weigh(&self, values: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let channel = |(v, w): (&Vec<f64>, &Vec<f64>)| v.iter().zip(w).map(|(v, w)| v * w.sqrt()).collect();
+        values.iter().zip(&self.of).map(channel).collect()
+    }
 }
 
-/// Residuals, their derivatives, and the normal equations.
-struct System<'a> {
-    weights: &'a Weights,
-    residuals: Vec<Vec<f64>>,
-    /// Of each unknown: derivative of each channel's residuals.
-    slopes: Vec<Vec<Vec<f64>>>,
-    normal: DMatrix<f64>,
-    gradient: DVector<f64>,
+/// Residuals at `values`, and the products of their weighted derivatives by each unknown, with themselves last.
+struct System {
+    cost: f64,
+    grams: Grams,
 }
 
-impl<'a> System<'a> {
+impl System {
     fn at(
         unknowns: &[Unknown],
         values: &[f64],
-        weights: &'a Weights,
-        residuals: &(dyn Fn(&[f64]) -> Vec<Vec<f64>> + Sync),
+        weights: &Weights,
+        blocks: &[u32],
+        residuals: &Residuals,
     ) -> Option<Self> {
-        let residuals_here = residuals(values);
-        let slope = |k: usize| {
-            let moved = |by: f64| {
-                let mut values = values.to_vec();
-                values[k] = (values[k] + by).clamp(unknowns[k].low, unknowns[k].high);
-                (values[k], residuals(&values))
-            };
-            let (x1, above) = moved(unknowns[k].step);
-            let (x0, below) = if unknowns[k].linear && x1 > values[k] {
-                (values[k], residuals_here.clone())
-            } else {
-                moved(-unknowns[k].step)
-            };
-            let scale = 1.0 / (x1 - x0);
-            let channel = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| (a - b) * scale).collect();
-            above.iter().zip(&below).map(channel).collect::<Vec<Vec<f64>>>()
-        };
-        let slopes: Vec<_> = (0..values.len()).into_par_iter().map(slope).collect();
-        let residuals = residuals_here;
-        let product = |a: &[Vec<f64>], b: &[Vec<f64>]| -> f64 {
-            let channel = |c: usize| (0..a[c].len()).map(|i| weights.of[c][i] * a[c][i] * b[c][i]).sum::<f64>();
-            (0..a.len()).map(channel).sum()
-        };
-        let n = values.len();
-        let normal = DMatrix::from_fn(n, n, |i, j| if i <= j { product(&slopes[i], &slopes[j]) } else { 0.0 });
-        let normal = DMatrix::from_fn(n, n, |i, j| normal[(i.min(j), i.max(j))]);
-        let gradient = DVector::from_fn(n, |i, _| product(&slopes[i], &residuals));
-        let finite = normal.iter().chain(gradient.iter()).all(|x| x.is_finite());
-        finite.then_some(System { weights, residuals, slopes, normal, gradient })
+        let here = residuals(values);
+        let slopes = |k: usize| weights.weigh(&slope(unknowns, values, k, &here, residuals));
+        let mut columns: Vec<_> = (0..values.len()).into_par_iter().map(slopes).collect();
+        columns.push(weights.weigh(&here));
+        let rows = vec![blocks.to_vec(); here.len()];
+        let stretches = blocks.iter().max().map_or(0, |last| *last as usize + 1);
+        let grams = Grams::new(&columns.iter().collect::<Vec<_>>(), &rows, stretches);
+        grams.sum.iter().all(|x| x.is_finite()).then(|| System { cost: weights.cost(&here), grams })
     }
 
-    /// The unknowns that may move: not at a bound that the descent pushes against, and with any effect at all.
-    fn free(&self, unknowns: &[Unknown], values: &[f64]) -> Vec<usize> {
+    /// Where the squares fall: J'(measured - predicted).
+    fn downhill(&self, i: usize) -> f64 {
+        -self.grams.sum[(i, self.grams.sum.ncols() - 1)]
+    }
+
+    /// The unknowns that are told: not at a bound that the descent pushes against, and with any effect at all.
+    fn told(&self, unknowns: &[Unknown], values: &[f64]) -> Vec<usize> {
         let blocked = |i: usize| {
-            let (u, x, downhill) = (&unknowns[i], values[i], -self.gradient[i]);
+            let (u, x, downhill) = (&unknowns[i], values[i], self.downhill(i));
             x <= u.low && downhill <= 0.0 || x >= u.high && downhill >= 0.0
         };
-        (0..values.len()).filter(|&i| !blocked(i) && self.normal[(i, i)] > 0.0).collect()
+        (0..values.len()).filter(|&i| !blocked(i) && self.grams.sum[(i, i)] > 0.0).collect()
     }
 
-    fn part(&self, free: &[usize]) -> DMatrix<f64> {
-        DMatrix::from_fn(free.len(), free.len(), |i, j| self.normal[(free[i], free[j])])
+    /// One step within the bounds. Whether it was worth another.
+    fn descend(
+        &self,
+        unknowns: &[Unknown],
+        values: &mut Vec<f64>,
+        damping: &mut f64,
+        cost: &dyn Fn(&[f64]) -> f64,
+    ) -> bool {
+        let n = values.len();
+        let own = self.grams.sum.view((0, 0), (n, n)).into_owned();
+        let downhill = (0..n).map(|i| self.downhill(i)).collect();
+        let normal = Normal { matrix: &own, downhill, ridge: vec![0.0; n] };
+        let bounded = |(u, &value): (&Unknown, &f64)| Bounded { value, low: u.low, high: u.high };
+        let at: Vec<Bounded> = unknowns.iter().zip(values.iter()).map(bounded).collect();
+        let Some((next, lower, ())) = normal.descend(&at, Shorter::Damped(damping), self.cost, |x| (cost(x), ()))
+        else {
+            return false;
+        };
+        *values = next;
+        self.cost - lower > ENOUGH * self.cost
     }
 
-    /// Covariance by leaving out one block after the other (the cluster jackknife, CR3): how far the values would move without
-    /// a block is (H - H_b)^-1 U_b, with H the normal equations and U the gradient. Unlike the sum of U U' alone it stays honest where
-    /// few blocks, such as the few yaw steps of a flight, hold most of what is known.
-    fn jackknife(&self, unknowns: &[Unknown], values: &[f64], blocks: &[u32]) -> Option<(DMatrix<f64>, Vec<bool>)> {
-        let free = self.free(unknowns, values);
-        let n = free.len();
-        let mut shares: BTreeMap<u32, (DMatrix<f64>, DVector<f64>)> = BTreeMap::new();
-        for (c, residuals) in self.residuals.iter().enumerate() {
-            for (i, r) in residuals.iter().enumerate() {
-                let (normal, gradient) =
-                    shares.entry(blocks[i]).or_insert_with(|| (DMatrix::zeros(n, n), DVector::zeros(n)));
-                for row in 0..n {
-                    let weighted = self.weights.of[c][i] * self.slopes[free[row]][c][i];
-                    gradient[row] += weighted * r;
-                    for column in 0..=row {
-                        normal[(row, column)] += weighted * self.slopes[free[column]][c][i];
-                    }
-                }
-            }
-        }
-        let whole = self.part(&free);
-        let everything = scaled_inverse(whole.clone())?;
-        let mut inner = DMatrix::zeros(n, n);
-        for (normal, gradient) in shares.values() {
-            let rest = DMatrix::from_fn(n, n, |i, j| whole[(i, j)] - normal[(i.max(j), i.min(j))]);
-            // A block without which nothing can be told counts as it is.
-            let moved = scaled_inverse(rest).unwrap_or_else(|| everything.clone()) * gradient;
-            inner += &moved * moved.transpose();
-        }
-        let mut covariance = DMatrix::zeros(values.len(), values.len());
-        for (row, &i) in free.iter().enumerate() {
-            for (column, &j) in free.iter().enumerate() {
+    /// Covariance of all unknowns, zero for those that are not told, and which are not.
+    fn covariance(&self, unknowns: &[Unknown], values: &[f64]) -> Option<(DMatrix<f64>, Vec<bool>)> {
+        let (n, told) = (values.len(), self.told(unknowns, values));
+        let (inner, _) = jackknife(&self.grams, &told, n, &vec![0.0; told.len()], 1)?;
+        let mut covariance = DMatrix::zeros(n, n);
+        for (row, &i) in told.iter().enumerate() {
+            for (column, &j) in told.iter().enumerate() {
                 covariance[(i, j)] = inner[(row, column)];
             }
         }
-        let at_bound = (0..values.len()).map(|i| !free.contains(&i)).collect();
-        Some((covariance, at_bound))
+        Some((covariance, (0..n).map(|i| !told.contains(&i)).collect()))
     }
 }
 
-/// Inverse of a symmetric positive matrix, by way of its correlation form: the unknowns differ in scale by orders.
-fn scaled_inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale = matrix.diagonal().map(|d| 1.0 / d.sqrt());
-    if scale.iter().any(|s| !s.is_finite()) {
-        return None;
-    }
-    let form = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] * scale[i] * scale[j]);
-    let inverse = form.try_inverse()?;
-    Some(DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| inverse[(i, j)] * scale[i] * scale[j]))
-}
-
-/// One Levenberg-Marquardt step within the bounds. Whether it was worth another.
-fn descend(
-    unknowns: &[Unknown],
-    values: &mut Vec<f64>,
-    damping: &mut f64,
-    system: &System,
-    residuals: &(dyn Fn(&[f64]) -> Vec<Vec<f64>> + Sync),
-) -> bool {
-    let cost = system.weights.cost(&system.residuals);
-    let free = system.free(unknowns, values);
-    while !free.is_empty() && *damping < 100.0 {
-        let mut damped = system.part(&free);
-        (0..free.len()).for_each(|i| damped[(i, i)] *= 1.0 + *damping);
-        if let Some(inverse) = scaled_inverse(damped) {
-            let step = -inverse * DVector::from_fn(free.len(), |i, _| system.gradient[free[i]]);
-            let mut tried = values.clone();
-            for (row, &i) in free.iter().enumerate() {
-                tried[i] = (tried[i] + step[row]).clamp(unknowns[i].low, unknowns[i].high);
-            }
-            let lower = system.weights.cost(&residuals(&tried));
-            if lower <= cost {
-                *values = tried;
-                *damping = (*damping * 0.1).max(1e-9);
-                return cost - lower > ENOUGH * cost;
-            }
-        }
-        *damping *= 10.0;
-    }
-    false
+/// Derivative of each channel's residuals by unknown `k`, from those `here` and those a small change away.
+fn slope(unknowns: &[Unknown], values: &[f64], k: usize, here: &[Vec<f64>], residuals: &Residuals) -> Vec<Vec<f64>> {
+    let moved = |by: f64| {
+        let mut values = values.to_vec();
+        values[k] = (values[k] + by).clamp(unknowns[k].low, unknowns[k].high);
+        (values[k], residuals(&values))
+    };
+    let (x1, above) = moved(unknowns[k].step);
+    let (x0, below) =
+        if unknowns[k].linear && x1 > values[k] { (values[k], here.to_vec()) } else { moved(-unknowns[k].step) };
+    let scale = 1.0 / (x1 - x0);
+    let channel = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| (a - b) * scale).collect();
+    above.iter().zip(&below).map(channel).collect()
 }
 
 #[cfg(test)]

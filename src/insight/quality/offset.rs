@@ -4,7 +4,7 @@ use super::{Finding, Severity};
 use crate::base::stats::median;
 use crate::flight::series::interpolated;
 use crate::flight::{Log, Stream};
-use crate::model::attitude::{Quaternion, compose};
+use crate::model::attitude::{Quaternion, compose, rotation_vector};
 
 /// Offsets looked for, s.
 const RANGE_S: f64 = 0.15;
@@ -37,15 +37,10 @@ pub fn turns(odometry: &Stream<10>) -> Turns {
         let (a, b) = (attitude(from), attitude(to));
         from = to;
         let turn = compose([a[0], -a[1], -a[2], -a[3]], b);
-        // Of the two quaternions of a rotation, the shorter one.
-        let sign = if turn[0] < 0.0 { -1.0 } else { 1.0 };
-        let axis = turn[1].hypot(turn[2]).hypot(turn[3]);
-        let angle = 2.0 * axis.atan2(sign * turn[0]);
-        let scale = if axis > 1e-9 { sign * angle / axis } else { 2.0 };
         // An attitude that was not measured is no number, and makes none.
         if turn.iter().all(|x| x.is_finite()) && span[1] - span[0] < 10.0 * OVER_S {
             out.spans.push(span);
-            out.measured.push([turn[1] * scale, turn[2] * scale, turn[3] * scale]);
+            out.measured.push(rotation_vector(turn));
         }
     }
     out

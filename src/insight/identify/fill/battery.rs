@@ -1,9 +1,9 @@
 //! The discharge, into the result.
 
 use crate::insight::identify::battery;
-use crate::insight::identify::data::{Data, Part};
 use crate::insight::identify::estimate::Estimate;
 use crate::insight::identify::result::{Channel, Identification};
+use crate::insight::prepare::data::{Data, Part};
 
 /// Fits rate and initial voltage.
 pub fn fill(data: &Data, out: &mut Identification) {

@@ -1,12 +1,12 @@
 //! Thrust and drag, into the result.
 
 use crate::base::check::Invalid;
-use crate::insight::identify::data::{Data, Part};
 use crate::insight::identify::estimate::Estimate;
 use crate::insight::identify::force::{DRAG_AT, Force, TAU, THRUST, Terms};
 use crate::insight::identify::result::{Channel, Identification, Response};
 use crate::insight::identify::solve::Solution;
 use crate::insight::identify::{Options, bias};
+use crate::insight::prepare::data::{Data, Part};
 use crate::model::dynamics::drag::{ellipsoid, semi_axes};
 
 /// Fits the thrust curve with as many powers as the flight settles, its time constant, and the drag.

@@ -1,11 +1,11 @@
 //! The response of one rate axis, into the result.
 
-use crate::insight::identify::data::{Data, Part};
 use crate::insight::identify::estimate::Estimate;
 use crate::insight::identify::rates::{Axis, Compared};
 use crate::insight::identify::result::{Channel, Identification, Response};
 use crate::insight::identify::solve::Solution;
 use crate::insight::identify::{AXES, Options};
+use crate::insight::prepare::data::{Data, Part};
 use crate::model::vehicle::{MaxRates, TimeConstants};
 
 /// A pure delay is remarked on where it is at least this long, s, and lowers the validation error at least to this share.

@@ -1,10 +1,12 @@
-//! A checked log on one clock, that of the IMU, with the parts to learn from and to validate on.
+//! A checked log on one clock, that of the IMU.
 
+use super::attitude::attitude;
 use crate::flight::Stream;
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::{held, interpolated, period};
 use crate::flight::spans::contain;
 use crate::insight::quality::Quality;
+use crate::model::attitude::Quaternion;
 use crate::model::dynamics::response::{alpha, toward};
 
 /// Odometry is not interpolated across more than this, s.
@@ -20,9 +22,11 @@ pub struct Flight {
     pub time: Vec<f64>,
     /// Which of them are usable flight.
     pub usable: Vec<bool>,
-    /// Voltage and body velocity at these times; NaN where unknown.
+    /// Voltage (V), body velocity (m/s), attitude (body to world) and position (m) at these times; NaN where unknown.
     pub voltage: Vec<f64>,
     pub velocity: [Vec<f64>; 3],
+    pub attitude: Vec<Quaternion<f64>>,
+    pub position: [Vec<f64>; 3],
     /// Stretch of time that each sample belongs to, counted over all flights.
     pub block: Vec<u32>,
 }
@@ -34,10 +38,12 @@ impl Flight {
         let time = log.imu.time_s.clone();
         let start = time.first().copied().unwrap_or(0.0);
         let usable = time.iter().map(|&t| contain(&quality.usable, t)).collect();
-        let velocity =
-            std::array::from_fn(|k| interpolated(&log.odometry.time_s, &log.odometry.column(7 + k), &time, REACH_S));
+        let odometry = |k: usize| interpolated(&log.odometry.time_s, &log.odometry.column(k), &time, REACH_S);
+        let (position, velocity) = (std::array::from_fn(odometry), std::array::from_fn(|k| odometry(7 + k)));
+        let attitude = attitude(&log.odometry, &time);
         let block = time.iter().map(|t| first_block + ((t - start) / block_s) as u32).collect();
-        Self { voltage: voltage(&log.battery, &time), velocity, usable, block, time, quality }
+        let voltage = voltage(&log.battery, &time);
+        Self { voltage, velocity, attitude, position, usable, block, time, quality }
     }
 
     /// What command `k` of the setpoints, delayed by `delay`, has become at each sample behind a first-order lag of `tau`

@@ -1,0 +1,123 @@
+//! Gauss-Newton steps within bounds.
+
+use super::inverse::inverse;
+use nalgebra::{DMatrix, DVector};
+
+/// A number and the range that it has to stay in.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounded {
+    pub value: f64,
+    pub low: f64,
+    pub high: f64,
+}
+
+/// Squares, linearised at a point.
+pub struct Normal<'a> {
+    /// J'J of all numbers.
+    pub matrix: &'a DMatrix<f64>,
+    /// J'(measured - predicted), and the pull of whatever else the numbers are held by.
+    pub downhill: Vec<f64>,
+    /// What is added to the diagonal: one over the variance that each number is known with beforehand.
+    pub ridge: Vec<f64>,
+}
+
+/// How a step that does not lower the squares is made shorter.
+pub enum Shorter<'a> {
+    /// Levenberg and Marquardt: by more weight on the diagonal, remembered from one step to the next. It bends toward the steepest way
+    /// down, which costs a new solution each time: for few numbers far from the minimum.
+    Damped(&'a mut f64),
+    /// By half, so many times at most: for steps whose squares cost a prediction of whole flights.
+    Halved(i32),
+}
+
+/// Damping beyond which no step is left, and the least that is kept.
+const DAMPING: [f64; 2] = [1e-9, 100.0];
+
+impl Normal<'_> {
+    /// The step to the minimum, with `damping` times its own information on each number's diagonal. Numbers at a bound that they push
+    /// against, and those that nothing tells, stay.
+    pub fn step(&self, at: &[Bounded], damping: f64) -> Option<Vec<f64>> {
+        let own = |j: usize| self.matrix[(j, j)];
+        let mut moving: Vec<usize> = (0..at.len()).filter(|&j| own(j) + self.ridge[j] > 0.0).collect();
+        loop {
+            let n = moving.len();
+            let part = DMatrix::from_fn(n, n, |a, b| self.matrix[(moving[a], moving[b])]);
+            let ridge: Vec<f64> = moving.iter().map(|&j| self.ridge[j] + damping * own(j)).collect();
+            let step = inverse(&part, &ridge)? * DVector::from_fn(n, |a, _| self.downhill[moving[a]]);
+            let stuck = |a: usize| {
+                let Bounded { value, low, high } = at[moving[a]];
+                value <= low && step[a] < 0.0 || value >= high && step[a] > 0.0
+            };
+            let still: Vec<usize> = (0..n).filter(|&a| !stuck(a)).map(|a| moving[a]).collect();
+            if still.len() == n {
+                let mut out = vec![0.0; at.len()];
+                moving.iter().zip(step.iter()).for_each(|(&j, by)| out[j] = *by);
+                return Some(out);
+            }
+            moving = still;
+        }
+    }
+
+    /// The first step that brings the squares below `before`: the values that it leads to, their squares, and what `squares`, which makes
+    /// both, says besides. `None` where no part of it does.
+    pub fn descend<T>(
+        &self,
+        at: &[Bounded],
+        shorter: Shorter,
+        before: f64,
+        mut squares: impl FnMut(&[f64]) -> (f64, T),
+    ) -> Option<(Vec<f64>, f64, T)> {
+        let mut lower = |step: &[f64], share: f64| {
+            let moved = |(n, by): (&Bounded, &f64)| (n.value + share * by).clamp(n.low, n.high);
+            let values: Vec<f64> = at.iter().zip(step).map(moved).collect();
+            let (now, rest) = squares(&values);
+            (now < before).then_some((values, now, rest))
+        };
+        match shorter {
+            Shorter::Halved(times) => {
+                let step = self.step(at, 0.0)?;
+                (0..times).find_map(|halvings| lower(&step, 0.5f64.powi(halvings)))
+            }
+            Shorter::Damped(damping) => {
+                while *damping < DAMPING[1] {
+                    if let Some(found) = self.step(at, *damping).and_then(|step| lower(&step, 1.0)) {
+                        *damping = (*damping * 0.1).max(DAMPING[0]);
+                        return Some(found);
+                    }
+                    *damping *= 10.0;
+                }
+                None
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// (x - 1)^2 + (x + y - 4)^2, once with room for its minimum at (1, 3), once with y at most 2.
+    #[test]
+    fn a_step_reaches_the_minimum_within_its_bounds() {
+        let matrix = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 1.0]);
+        let cost = |v: &[f64]| ((v[0] - 1.0).powi(2) + (v[0] + v[1] - 4.0).powi(2), ());
+        for (y, high, wanted) in [(0.0, 9.0, [1.0, 3.0]), (2.0, 2.0, [1.5, 2.0])] {
+            let at = [Bounded { value: 0.0, low: -9.0, high: 9.0 }, Bounded { value: y, low: 0.0, high }];
+            let normal = Normal { matrix: &matrix, downhill: vec![5.0 - y, 4.0 - y], ridge: vec![0.0; 2] };
+            let before = cost(&[0.0, y]).0;
+            let mut damping = 1e-9;
+            for shorter in [Shorter::Halved(1), Shorter::Damped(&mut damping)] {
+                let (values, ..) = normal.descend(&at, shorter, before, cost).unwrap();
+                assert!((0..2).all(|k| (values[k] - wanted[k]).abs() < 1e-6), "{values:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_that_never_pays_is_none() {
+        let matrix = DMatrix::from_element(1, 1, 1.0);
+        let normal = Normal { matrix: &matrix, downhill: vec![1.0], ridge: vec![0.0] };
+        let at = [Bounded { value: 0.0, low: -1.0, high: 1.0 }];
+        assert!(normal.descend(&at, Shorter::Halved(5), 1.0, |_| (2.0, ())).is_none());
+    }
+}

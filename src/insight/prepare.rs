@@ -1,0 +1,6 @@
+//! Checked logs as flights on one clock, for identification and diagnosis alike.
+
+pub mod attitude;
+pub mod data;
+pub mod flight;
+pub mod windows;
