@@ -5,3 +5,6 @@ pub mod estimate;
 pub mod identify;
 pub mod prepare;
 pub mod quality;
+
+/// Is told what is being done, and the share done so far, before each step.
+pub type Watch<'a> = &'a mut dyn FnMut(&str, f64);

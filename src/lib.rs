@@ -64,7 +64,7 @@ pub use flight::Log;
 pub use flight::sensors::SensorConfig;
 pub use insight::diagnose::Diagnosed;
 pub use insight::diagnose::finding::{Diagnosis, Status, Verdict};
-pub use insight::identify::Options as IdentifyOptions;
+pub use insight::identify::IdentifyOptions;
 pub use insight::identify::estimate::Estimate;
 pub use insight::identify::result::Identification;
 pub use insight::quality::{Quality, Severity, check};
@@ -98,12 +98,12 @@ pub mod score {
 pub mod log {
     pub use crate::flight::sensors::{Channel, Imu, Odometry, Turn, Voltmeter};
     pub use crate::flight::{Readable, Stream, VehicleRecord};
-    pub use crate::insight::quality::{Finding, Parameter, Summary};
+    pub use crate::insight::quality::{LogFinding, ParameterCoverage, StreamSummary};
 }
 
 /// The parts of an identification.
 pub mod identification {
-    pub use crate::insight::identify::result::{Battery, Channel, Drag, Response};
+    pub use crate::insight::identify::result::{BatteryEstimate, ComparedChannel, DragEstimate, Response};
 }
 
 /// The parts of a diagnosis.

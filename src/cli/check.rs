@@ -3,7 +3,7 @@
 use super::{CommandEnd, findings, tell};
 use crate::flight::spans::Span;
 use crate::flight::{self, Readable};
-use crate::insight::quality::{Finding, Parameter, Summary, check};
+use crate::insight::quality::{LogFinding, ParameterCoverage, StreamSummary, check};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -32,10 +32,10 @@ Examples:
 #[derive(Serialize)]
 struct CheckDocument<'a> {
     log: &'a str,
-    streams: &'a [Summary],
-    findings: &'a [Finding],
+    streams: &'a [StreamSummary],
+    findings: &'a [LogFinding],
     usable_s: &'a [Span],
-    parameters: &'a [Parameter],
+    parameters: &'a [ParameterCoverage],
 }
 
 /// Reads, checks, prints.

@@ -119,7 +119,7 @@ fn check_racing(args: &Args) -> Result<(), BadInput> {
 
 /// The vehicle, where only the logs say what it is.
 fn identified(args: &Args, logs: &[Quality], bar: &ProgressBar) -> Result<Vehicle, BadInput> {
-    let options = identify::Options::new(Vehicle::load(&args.base)?);
+    let options = identify::IdentifyOptions::new(Vehicle::load(&args.base)?);
     let found = identify(logs.to_vec(), &options, &mut |step, _| bar.set_message(format!("identifying: {step}")));
     Ok(found.vehicle)
 }

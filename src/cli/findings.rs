@@ -3,12 +3,12 @@
 use super::columns::table;
 use crate::flight::Log;
 use crate::flight::spans::length;
-use crate::insight::quality::{Finding, Parameter, Quality, Severity, Summary};
+use crate::insight::quality::{LogFinding, ParameterCoverage, Quality, Severity, StreamSummary};
 
 /// What the log holds, stream by stream.
-pub fn streams(streams: &[Summary]) -> String {
+pub fn streams(streams: &[StreamSummary]) -> String {
     let number = |value: Option<f64>, digits: usize| value.map_or("-".into(), |v| format!("{v:.digits$}"));
-    let row = |s: &Summary| {
+    let row = |s: &StreamSummary| {
         vec![
             s.stream.to_string(),
             s.samples.to_string(),
@@ -23,11 +23,11 @@ pub fn streams(streams: &[Summary]) -> String {
 }
 
 /// The findings, the worst first.
-pub fn findings(findings: &[Finding]) -> String {
+pub fn findings(findings: &[LogFinding]) -> String {
     if findings.is_empty() {
         return "nothing wrong was found".into();
     }
-    let line = |f: &Finding| {
+    let line = |f: &LogFinding| {
         let severity = match f.severity {
             Severity::Problem => "PROBLEM",
             Severity::Warning => "warning",
@@ -40,9 +40,10 @@ pub fn findings(findings: &[Finding]) -> String {
 }
 
 /// What the log can and cannot tell.
-pub fn told(parameters: &[Parameter]) -> String {
-    let row =
-        |p: &Parameter| vec![p.name.to_string(), p.why_not.clone().map_or("yes".into(), |why| format!("no: {why}"))];
+pub fn told(parameters: &[ParameterCoverage]) -> String {
+    let row = |p: &ParameterCoverage| {
+        vec![p.name.to_string(), p.why_not.clone().map_or("yes".into(), |why| format!("no: {why}"))]
+    };
     table(&["parameter", "can be told"], parameters.iter().map(row).collect(), 0..0)
 }
 

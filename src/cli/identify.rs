@@ -4,10 +4,10 @@ use super::{CommandEnd, columns, logs, progress, tell};
 use crate::base::check::{BadInput, Check};
 use crate::base::encode;
 use crate::base::fsio::Reserved;
-use crate::insight::identify::document::{CheckedLog, Document};
+use crate::insight::identify::document::{CheckedLog, IdentificationDocument};
 use crate::insight::identify::estimate::Estimate;
 use crate::insight::identify::result::Identification;
-use crate::insight::identify::{AXES, FORCE_CUTOFF_HZ, Options, RATE_CUTOFF_HZ, identify, refuse};
+use crate::insight::identify::{AXES, FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ, identify, refuse};
 use crate::model::vehicle::Vehicle;
 use crate::present::report;
 use std::path::PathBuf;
@@ -106,7 +106,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         tell(&format!("report in {}", written.display()));
     }
     if let Some(json) = json {
-        let document = encode::json("the identification", &Document::new(&found, documents))?;
+        let document = encode::json("the identification", &IdentificationDocument::new(&found, documents))?;
         tell(&format!("figures in {}", json.write(document.as_bytes())?.display()));
     }
     let written = out.write(encode::toml("the vehicle", &found.vehicle)?.as_bytes())?;
@@ -114,8 +114,8 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     Ok(if logs::damaged(&checked) { CommandEnd::Damaged } else { CommandEnd::Done })
 }
 
-fn options(args: &Args) -> Result<Options, BadInput> {
-    let options = Options {
+fn options(args: &Args) -> Result<IdentifyOptions, BadInput> {
+    let options = IdentifyOptions {
         base: Vehicle::load(&args.base)?,
         mass_kg: args.mass,
         max_rate_rad_s: args.full_rates.map(|rates| rates.map(f64::to_radians)),

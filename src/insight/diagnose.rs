@@ -38,6 +38,7 @@ pub mod trial;
 pub mod whiten;
 
 use crate::base::stats::mean;
+use crate::insight::Watch;
 use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
 use crate::model::effects;
@@ -50,9 +51,6 @@ use record::FlightRecord;
 use select::{Added, Selection};
 use std::collections::BTreeMap;
 use structure::NAMES;
-
-/// What the diagnosis is busy with: called before each step with its name and the share done so far.
-pub type Watch<'a> = &'a mut dyn FnMut(&str, f64);
 
 /// Flights and their diagnosis, with all that a report needs.
 pub struct Diagnosed {

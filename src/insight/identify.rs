@@ -7,15 +7,16 @@ pub mod battery;
 pub mod bias;
 pub mod document;
 pub mod estimate;
-mod fill;
 pub mod force;
 pub mod rates;
 pub mod refuse;
+mod report;
 pub mod result;
 pub mod solve;
 
 use crate::base::check::{Check, Invalid};
 use crate::base::stats::quantile;
+use crate::insight::Watch;
 use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
@@ -28,7 +29,7 @@ pub const FORCE_CUTOFF_HZ: f64 = 30.0;
 
 /// How to identify.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
+pub struct IdentifyOptions {
     /// Where values come from that the logs cannot tell.
     pub base: Vehicle,
     /// Mass, kg; none: what the logs say, else the base vehicle's.
@@ -41,7 +42,7 @@ pub struct Options {
     pub force_cutoff_hz: f64,
 }
 
-impl Options {
+impl IdentifyOptions {
     /// The base vehicle lends what the logs cannot tell; everything else as usual.
     pub fn new(base: Vehicle) -> Self {
         let (rate_cutoff_hz, force_cutoff_hz) = (RATE_CUTOFF_HZ, FORCE_CUTOFF_HZ);
@@ -49,7 +50,7 @@ impl Options {
     }
 }
 
-impl Check for Options {
+impl Check for IdentifyOptions {
     fn check(&self) -> Result<(), Invalid> {
         Invalid::unless_positive("--mass", self.mass_kg.unwrap_or(1.0), "")?;
         Invalid::unless_positive("--rate-cutoff", self.rate_cutoff_hz, "")?;
@@ -57,24 +58,21 @@ impl Check for Options {
     }
 }
 
-/// What identification is busy with: called before each step with its name and the share done so far.
-pub type Watch<'a> = &'a mut dyn FnMut(&str, f64);
-
 pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 
 /// Identifies one vehicle from its flights.
-pub fn identify(logs: Vec<Quality>, options: &Options, watch: Watch) -> Identification {
+pub fn identify(logs: Vec<Quality>, options: &IdentifyOptions, watch: Watch) -> Identification {
     let data = Data::new(logs);
     let mut out = Identification::new(&data, options);
     watch("roll, pitch and yaw response", 0.0);
-    let fitted: Vec<_> = (0..3).into_par_iter().map(|axis| fill::rates::fit(&data, axis, options)).collect();
+    let fitted: Vec<_> = (0..3).into_par_iter().map(|axis| report::rates::fit(&data, axis, options)).collect();
     for (axis, fitted) in fitted.into_iter().enumerate() {
-        fill::rates::keep(fitted, axis, &mut out);
+        report::rates::keep(fitted, axis, &mut out);
     }
     watch("battery", 0.45);
-    fill::battery::fill(&data, &mut out);
+    report::battery::report(&data, &mut out);
     watch("thrust and drag", 0.5);
-    fill::force::fill(&data, options, &mut out);
+    report::force::report(&data, options, &mut out);
     watch("done", 1.0);
     out
 }

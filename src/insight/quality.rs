@@ -9,7 +9,7 @@ mod signs;
 mod timing;
 mod tumbling;
 
-pub use coverage::Parameter;
+pub use coverage::ParameterCoverage;
 
 use crate::flight::spans::{self, Span};
 use crate::flight::{Log, Readable};
@@ -29,7 +29,7 @@ pub enum Severity {
 
 /// Something about a log that a user should know.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Finding {
+pub struct LogFinding {
     /// How bad it is.
     pub severity: Severity,
     /// What kind of finding, such as `gap`.
@@ -46,7 +46,7 @@ pub struct Finding {
 
 /// One stream in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Summary {
+pub struct StreamSummary {
     /// Which stream, such as `imu`.
     pub stream: &'static str,
     /// How many there are.
@@ -65,18 +65,18 @@ pub struct Quality {
     /// The log with time ascending in every stream, repeated rows gone and clocks aligned.
     pub log: Log,
     /// What each stream holds.
-    pub streams: Vec<Summary>,
+    pub streams: Vec<StreamSummary>,
     /// By how much the odometry's clock was moved to the IMU's, s.
     pub moved_s: f64,
     /// The worst first.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<LogFinding>,
     /// When the vehicle flies, undamaged and within its sensors' ranges.
     pub usable: Vec<Span>,
     /// What the log can tell, in the order of the model's equations.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<ParameterCoverage>,
 }
 
-impl Finding {
+impl LogFinding {
     /// A finding that holds throughout.
     pub fn new(severity: Severity, kind: &'static str, stream: &'static str, what: String, so: &str) -> Self {
         Self { severity, kind, stream, span_s: None, what, so: so.into() }
@@ -95,11 +95,11 @@ pub fn check(log: &Log) -> Quality {
     if let Readable::Prefix { bytes, of, why } = &log.readable {
         let share = 100.0 * *bytes as f64 / (*of).max(1) as f64;
         let what = format!("readable up to byte {bytes} of {of} ({share:.0} %): {why}");
-        findings.push(Finding::new(Severity::Problem, "damaged_file", "file", what, "what comes after is lost"));
+        findings.push(LogFinding::new(Severity::Problem, "damaged_file", "file", what, "what comes after is lost"));
     }
     let (mut log, streams) = timing::repair(log, &mut findings);
     if log.imu.is_empty() {
-        findings.push(Finding::new(
+        findings.push(LogFinding::new(
             Severity::Problem,
             "no_imu",
             "imu",

@@ -3,7 +3,7 @@
 use crate::truth;
 use racer::flight::spans::{contain, length};
 use racer::flight::{Log, Readable};
-use racer::insight::quality::{Finding, Quality, Severity, check};
+use racer::insight::quality::{LogFinding, Quality, Severity, check};
 use std::sync::OnceLock;
 
 /// A minute of the pilot's flight.
@@ -12,12 +12,12 @@ fn good() -> Log {
     LOG.get_or_init(|| truth::fly(&truth::Vehicle::draw(3), 3, 60.0, 1.0)).clone()
 }
 
-fn find<'a>(quality: &'a Quality, kind: &str) -> Option<&'a Finding> {
+fn find<'a>(quality: &'a Quality, kind: &str) -> Option<&'a LogFinding> {
     quality.findings.iter().find(|finding| finding.kind == kind)
 }
 
 /// Checks the log after `damage`; the finding of this kind must be there.
-fn damaged(kind: &str, damage: impl FnOnce(&mut Log)) -> (Quality, Finding) {
+fn damaged(kind: &str, damage: impl FnOnce(&mut Log)) -> (Quality, LogFinding) {
     let mut log = good();
     damage(&mut log);
     let quality = check(&log);

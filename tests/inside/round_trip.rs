@@ -3,7 +3,7 @@
 use crate::truth;
 use racer::insight::identify::estimate::Estimate;
 use racer::insight::identify::result::Identification;
-use racer::insight::identify::{Options, identify};
+use racer::insight::identify::{IdentifyOptions, identify};
 use racer::insight::quality::{Severity, check};
 use racer::model::vehicle::Vehicle;
 use std::collections::BTreeMap;
@@ -21,8 +21,8 @@ struct Judged {
     inside: bool,
 }
 
-fn options() -> Options {
-    Options {
+fn options() -> IdentifyOptions {
+    IdentifyOptions {
         base: Vehicle::load("seed_class").unwrap(),
         mass_kg: None,
         max_rate_rad_s: None,

@@ -3,7 +3,7 @@
 use crate::base::stats::quantile;
 use crate::flight::Log;
 use crate::flight::series::{last_at, period};
-use crate::insight::prepare::flight::Flight;
+use crate::insight::prepare::flight::PreparedFlight;
 use crate::insight::prepare::windows::{often_enough, windows};
 use crate::insight::quality::Quality;
 use crate::model::attitude::{Quaternion, body_axes};
@@ -69,7 +69,7 @@ pub struct FlightRecord {
 
 impl FlightRecord {
     /// `flight` of a vehicle like `base`; `full_rate_rad_s` is what a full stick asks for.
-    pub fn new(flight: &Flight, full_rate_rad_s: [f64; 3]) -> Self {
+    pub fn new(flight: &PreparedFlight, full_rate_rad_s: [f64; 3]) -> Self {
         let quality = &flight.quality;
         let log = &quality.log;
         let every = ((1.0 / period(&flight.time)) / ENOUGH_HZ * 1.05).floor().max(1.0) as usize;

@@ -3,7 +3,7 @@
 use super::rates::{Compared, times};
 use super::solve::{Solution, Unknown, solve};
 use crate::flight::series::last_at;
-use crate::insight::prepare::data::{Data, Part};
+use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::dynamics::battery::discharged;
 
 /// Order of the unknowns: rate (V/s), then the voltage at the beginning of each flight (V).
@@ -31,7 +31,7 @@ fn measured(data: &Data) -> Vec<Vec<f64>> {
 }
 
 /// Fits one rate and each flight's initial voltage.
-pub fn fit(data: &Data, part: Part) -> Option<Solution> {
+pub fn fit(data: &Data, part: DataPart) -> Option<Solution> {
     let measured = measured(data);
     let chosen = data.choose(part, |f, i| measured[f][i].is_finite());
     let (values, times, blocks) = (Data::pick(&measured, &chosen), times(data, &chosen), data.blocks(&chosen));
@@ -50,7 +50,7 @@ pub fn fit(data: &Data, part: Part) -> Option<Solution> {
 }
 
 /// Measured voltage and the line, V.
-pub fn compare(data: &Data, part: Part, fit: &Solution) -> Compared {
+pub fn compare(data: &Data, part: DataPart, fit: &Solution) -> Compared {
     let measured = measured(data);
     let chosen = data.choose(part, |f, i| measured[f][i].is_finite());
     let begins = beginnings(data);

@@ -3,7 +3,7 @@
 use super::solve::{Solution, Unknown, solve};
 use crate::flight::spans::contain;
 use crate::insight::prepare::data::Data;
-use crate::insight::prepare::flight::Flight;
+use crate::insight::prepare::flight::PreparedFlight;
 use crate::insight::prepare::windows::{often_enough, windows};
 use crate::model::attitude::{body_axes, in_world};
 
@@ -11,7 +11,7 @@ use crate::model::attitude::{body_axes, in_world};
 const OVER_S: f64 = 0.5;
 
 /// One comparison: change of velocity less gravity less integrated specific force, and the integrated rotation; world.
-struct Stretch {
+struct BiasWindow {
     block: u32,
     missing: [f64; 3],
     rotation: [[f64; 3]; 3],
@@ -19,12 +19,12 @@ struct Stretch {
 
 /// Fits the bias along body x, y, z, m/s2. `None` without odometry that is fast enough and knows attitude and velocity.
 pub fn fit(data: &Data, gravity: f64) -> Option<Solution> {
-    let stretches: Vec<Stretch> = data.flights.iter().flat_map(|flight| stretches(flight, gravity)).collect();
+    let stretches: Vec<BiasWindow> = data.flights.iter().flat_map(|flight| stretches(flight, gravity)).collect();
     let blocks: Vec<u32> = stretches.iter().map(|s| s.block).collect();
     let residuals = |b: &[f64]| {
         let axis = |k: usize| {
             // The bias makes the accelerometer integrate to too much: the change of velocity lacks it.
-            let one = |s: &Stretch| s.missing[k] + (0..3).map(|j| s.rotation[j][k] * b[j]).sum::<f64>();
+            let one = |s: &BiasWindow| s.missing[k] + (0..3).map(|j| s.rotation[j][k] * b[j]).sum::<f64>();
             stretches.iter().map(one).collect::<Vec<f64>>()
         };
         (0..3).map(axis).collect()
@@ -32,7 +32,7 @@ pub fn fit(data: &Data, gravity: f64) -> Option<Solution> {
     solve(&[Unknown { start: 0.0, low: -3.0, high: 3.0, step: 1e-3, linear: true }; 3], &blocks, &residuals)
 }
 
-fn stretches(flight: &Flight, gravity: f64) -> Vec<Stretch> {
+fn stretches(flight: &PreparedFlight, gravity: f64) -> Vec<BiasWindow> {
     if !often_enough(&flight.quality.log.odometry) {
         return Vec::new();
     }
@@ -43,7 +43,7 @@ fn stretches(flight: &Flight, gravity: f64) -> Vec<Stretch> {
     all.filter(|stretch| stretch.missing.iter().all(|x| x.is_finite())).collect()
 }
 
-fn stretch(flight: &Flight, force: &[Vec<f64>; 3], [from, to]: [usize; 2], gravity: f64) -> Stretch {
+fn stretch(flight: &PreparedFlight, force: &[Vec<f64>; 3], [from, to]: [usize; 2], gravity: f64) -> BiasWindow {
     let mut rotation = [[0.0; 3]; 3];
     let mut pushed = [0.0; 3];
     for i in from..to {
@@ -61,5 +61,5 @@ fn stretch(flight: &Flight, force: &[Vec<f64>; 3], [from, to]: [usize; 2], gravi
     let (before, after) = (velocity(from), velocity(to));
     let fallen = [0.0, 0.0, gravity * (flight.time[to] - flight.time[from])];
     let missing = std::array::from_fn(|k| after[k] - before[k] + fallen[k] - pushed[k]);
-    Stretch { block: flight.block[from], missing, rotation }
+    BiasWindow { block: flight.block[from], missing, rotation }
 }

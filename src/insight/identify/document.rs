@@ -2,15 +2,15 @@
 
 use super::AXES;
 use super::estimate::Estimate;
-use super::result::{Battery, Drag, Identification, Response};
-use crate::insight::quality::{Finding, Summary};
+use super::result::{BatteryEstimate, DragEstimate, Identification, Response};
+use crate::insight::quality::{LogFinding, StreamSummary};
 use crate::model::vehicle::Vehicle;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// What `racer identify --json` writes. A value that the logs cannot tell is null, with a `why`.
 #[derive(Serialize)]
-pub struct Document<'a> {
+pub struct IdentificationDocument<'a> {
     racer: &'a str,
     logs: Vec<CheckedLog<'a>>,
     /// Usable flight of all logs, s.
@@ -22,8 +22,8 @@ pub struct Document<'a> {
     thrust_coefficients: &'a [Estimate; 6],
     /// 1 and 99 % of the thrust command in flight, -1..1.
     thrust_flown: Option<[f64; 2]>,
-    drag: &'a Drag,
-    battery: &'a Battery,
+    drag: &'a DragEstimate,
+    battery: &'a BatteryEstimate,
     accelerometer_bias_m_s2: &'a [Estimate; 3],
     remarks: &'a [String],
     vehicle: &'a Vehicle,
@@ -33,13 +33,13 @@ pub struct Document<'a> {
 #[derive(Serialize)]
 pub struct CheckedLog<'a> {
     pub name: &'a str,
-    pub streams: &'a [Summary],
-    pub findings: &'a [Finding],
+    pub streams: &'a [StreamSummary],
+    pub findings: &'a [LogFinding],
 }
 
-impl<'a> Document<'a> {
+impl<'a> IdentificationDocument<'a> {
     pub fn new(found: &'a Identification, logs: Vec<CheckedLog<'a>>) -> Self {
-        Document {
+        IdentificationDocument {
             racer: env!("CARGO_PKG_VERSION"),
             logs,
             usable_s: found.usable_s,

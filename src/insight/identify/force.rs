@@ -3,7 +3,7 @@
 use super::rates::{Compared, TAU_S, TAUS_S, times};
 use super::solve::{Solution, Unknown, solve};
 use crate::base::stats::mean;
-use crate::insight::prepare::data::{Chosen, Data, Part};
+use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::model::dynamics::force_in_body;
 use crate::model::thrust::specific_thrust;
 use nalgebra::{DMatrix, DVector};
@@ -88,7 +88,7 @@ impl<'a> Force<'a> {
         out
     }
 
-    fn choose(&self, part: Part) -> Chosen {
+    fn choose(&self, part: DataPart) -> Chosen {
         let mut x = [0.0; UNKNOWNS];
         x[TAU] = TAUS_S[0];
         x[THRUST + 5] = 1.0;
@@ -124,7 +124,7 @@ impl<'a> Force<'a> {
 
     /// Fits all unknowns of the terms; the others stay at zero with no width.
     /// `near` is a solution to start from.
-    pub fn fit(&self, part: Part, near: Option<&Solution>) -> Option<Solution> {
+    pub fn fit(&self, part: DataPart, near: Option<&Solution>) -> Option<Solution> {
         let chosen = self.choose(part);
         let thinned: Chosen = chosen.iter().map(|c| c.iter().copied().step_by(7).collect()).collect();
         let starts = TAUS_S.iter().filter_map(|&tau| self.linear(tau, &thinned).map(|(c, left)| (left, tau, c)));
@@ -180,7 +180,7 @@ impl<'a> Force<'a> {
     }
 
     /// Measured and predicted specific force along `axis`, m/s2, and when.
-    pub fn compare(&self, part: Part, fit: &Solution, axis: usize) -> Compared {
+    pub fn compare(&self, part: DataPart, fit: &Solution, axis: usize) -> Compared {
         let chosen = self.choose(part);
         let predicted = self.predicted(&fit.values);
         Compared {
@@ -192,7 +192,7 @@ impl<'a> Force<'a> {
 
     /// 1 and 99 % of the thrust command in [-1, 1], behind its lag, in flight.
     pub fn flown(&self, tau: f64) -> [f64; 2] {
-        let u = Data::pick(&self.command(tau), &self.choose(Part::All));
+        let u = Data::pick(&self.command(tau), &self.choose(DataPart::All));
         [0.01, 0.99].map(|q| crate::base::stats::quantile(&u, q))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::solve::{Solution, Unknown, solve};
 use crate::base::stats::{Score, mean};
-use crate::insight::prepare::data::{Chosen, Data, Part};
+use crate::insight::prepare::data::{Chosen, Data, DataPart};
 
 /// Bounds of every time constant, s.
 pub const TAU_S: [f64; 2] = [0.0005, 0.3];
@@ -13,7 +13,7 @@ const DELAYS_S: [f64; 4] = [0.005, 0.02, 0.04, 0.07];
 const DELAY_MOST_S: f64 = 0.15;
 
 /// Measured and predicted rates of one axis.
-pub struct Axis<'a> {
+pub struct RateAxis<'a> {
     data: &'a Data,
     /// 0 roll, 1 pitch, 2 yaw.
     axis: usize,
@@ -22,7 +22,7 @@ pub struct Axis<'a> {
     measured: Vec<Vec<f64>>,
 }
 
-impl<'a> Axis<'a> {
+impl<'a> RateAxis<'a> {
     pub fn new(data: &'a Data, axis: usize, cutoff_hz: f64) -> Self {
         let measured = data.signals(|flight| flight.smooth(flight.measured(axis), cutoff_hz));
         Self { data, axis, cutoff_hz, measured }
@@ -33,13 +33,13 @@ impl<'a> Axis<'a> {
         self.data.signals(|flight| flight.smooth(flight.response(self.axis, tau, delay), self.cutoff_hz))
     }
 
-    fn choose(&self, part: Part) -> Chosen {
+    fn choose(&self, part: DataPart) -> Chosen {
         let response = self.response(TAUS_S[0], DELAY_MOST_S);
         self.data.choose(part, |f, i| self.measured[f][i].is_finite() && response[f][i].is_finite())
     }
 
     /// Fits time constant (s), gain (1), offset (rad/s) and, with `delay`, a pure delay (s).
-    pub fn fit(&self, part: Part, delay: bool) -> Option<Solution> {
+    pub fn fit(&self, part: DataPart, delay: bool) -> Option<Solution> {
         let chosen = self.choose(part);
         let (measured, blocks) = (Data::pick(&self.measured, &chosen), self.data.blocks(&chosen));
         let residuals = |x: &[f64]| {
@@ -66,7 +66,7 @@ impl<'a> Axis<'a> {
     }
 
     /// Measured and predicted rates of `part`, rad/s, and when.
-    pub fn compare(&self, part: Part, fit: &Solution) -> Compared {
+    pub fn compare(&self, part: DataPart, fit: &Solution) -> Compared {
         let chosen = self.choose(part);
         let [tau, gain, offset] = [fit.values[0], fit.values[1], fit.values[2]];
         let predicted = Data::pick(&self.response(tau, fit.values.get(3).copied().unwrap_or(0.0)), &chosen);

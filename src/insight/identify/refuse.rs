@@ -3,12 +3,12 @@
 use super::result::Identification;
 use crate::base::check::{BadInput, Check};
 use crate::base::error::{Error, Result};
-use crate::insight::quality::{Finding, Quality, Severity};
+use crate::insight::quality::{LogFinding, Quality, Severity};
 
 /// Fails where a log contradicts itself, such as a rate that goes against its setpoint.
 pub fn problems(logs: &[Quality]) -> Result<(), BadInput> {
     for quality in logs {
-        let wrong = |finding: &&Finding| finding.severity == Severity::Problem && finding.stream != "file";
+        let wrong = |finding: &&LogFinding| finding.severity == Severity::Problem && finding.stream != "file";
         if let Some(finding) = quality.findings.iter().find(wrong) {
             let expected = "a log without problems";
             let advice = format!("{}, or use the log all the same with --despite-problems", finding.so);

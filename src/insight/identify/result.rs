@@ -2,7 +2,7 @@
 
 use super::estimate::Estimate;
 use super::rates::Compared;
-use super::{AXES, Options, fastest};
+use super::{AXES, IdentifyOptions, fastest};
 use crate::base::stats::Score;
 use crate::flight::spans::Span;
 use crate::insight::prepare::data::Data;
@@ -32,7 +32,7 @@ pub struct Response {
 
 /// Drag.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Drag {
+pub struct DragEstimate {
     /// Deceleration over speed squared along x, y, z, 1/m.
     pub k_1_m: [Estimate; 3],
     /// The ellipsoid with these, given its coefficient.
@@ -43,7 +43,7 @@ pub struct Drag {
     pub flown_m_s: Option<f64>,
 }
 
-impl Drag {
+impl DragEstimate {
     pub(super) fn unknown(&mut self, why: &str) {
         self.k_1_m = std::array::from_fn(|_| Estimate::unknown(why));
     }
@@ -51,7 +51,7 @@ impl Drag {
 
 /// Discharge.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Battery {
+pub struct BatteryEstimate {
     /// Voltage at the start, V.
     pub initial_v: Estimate,
     /// Change of the voltage, V/s.
@@ -62,7 +62,7 @@ pub struct Battery {
 
 /// A signal, measured and predicted, over training and validation part.
 #[derive(Clone, Debug)]
-pub struct Channel {
+pub struct ComparedChannel {
     /// What was measured.
     pub name: String,
     /// Of its numbers.
@@ -73,14 +73,14 @@ pub struct Channel {
     pub validation: Compared,
 }
 
-impl Channel {
+impl ComparedChannel {
     pub(super) fn new(name: &str, unit: &'static str, scale: f64, train: &Compared, validation: &Compared) -> Self {
         let scaled = |x: &Compared| Compared {
             time: x.time.clone(),
             measured: x.measured.iter().map(|v| v * scale).collect(),
             predicted: x.predicted.iter().map(|v| v * scale).collect(),
         };
-        Channel { name: name.into(), unit, train: scaled(train), validation: scaled(validation) }
+        ComparedChannel { name: name.into(), unit, train: scaled(train), validation: scaled(validation) }
     }
 }
 
@@ -96,9 +96,9 @@ pub struct Identification {
     /// c0..c5 of Eq. 7 for the command in [-1, 1], N.
     pub thrust_n: [Estimate; 6],
     /// Drag.
-    pub drag: Drag,
+    pub drag: DragEstimate,
     /// Discharge.
-    pub battery: Battery,
+    pub battery: BatteryEstimate,
     /// Constant error of the accelerometer along x, y, z, m/s2.
     pub accelerometer_bias_m_s2: [Estimate; 3],
     /// Body rates that a full command asks for, rad/s.
@@ -112,12 +112,12 @@ pub struct Identification {
     /// What a reader should know besides.
     pub remarks: Vec<String>,
     /// Signals, measured and predicted; none where nothing could be told.
-    pub channels: Vec<Channel>,
+    pub channels: Vec<ComparedChannel>,
 }
 
 impl Identification {
     /// The base vehicle, with what the logs and options say without any fit.
-    pub(super) fn new(data: &Data, options: &Options) -> Self {
+    pub(super) fn new(data: &Data, options: &IdentifyOptions) -> Self {
         let mut vehicle = options.base.clone();
         vehicle.name = data.flights.first().map_or("identified", |f| &f.quality.log.name).to_string();
         let spans = data.flights.iter().map(|flight| {

@@ -61,33 +61,33 @@ pub fn solve(unknowns: &[Unknown], blocks: &[u32], residuals: &Residuals) -> Opt
     let mut values: Vec<f64> = unknowns.iter().map(|u| u.start.clamp(u.low, u.high)).collect();
     let mut damping = 1e-6;
     for _ in 0..STEPS {
-        let weights = Weights::of(&residuals(&values))?;
-        let system = System::at(unknowns, &values, &weights, blocks, residuals)?;
+        let weights = RobustWeights::of(&residuals(&values))?;
+        let system = Linearised::at(unknowns, &values, &weights, blocks, residuals)?;
         let cost = |x: &[f64]| weights.cost(&residuals(x));
         if !system.descend(unknowns, &mut values, &mut damping, &cost) {
             break;
         }
     }
-    let weights = Weights::of(&residuals(&values))?;
-    let system = System::at(unknowns, &values, &weights, blocks, residuals)?;
+    let weights = RobustWeights::of(&residuals(&values))?;
+    let system = Linearised::at(unknowns, &values, &weights, blocks, residuals)?;
     let (covariance, at_bound) = system.covariance(unknowns, &values)?;
     Some(Solution { values, covariance, at_bound, noise: weights.noise })
 }
 
 /// Weight of every sample.
-struct Weights {
+struct RobustWeights {
     noise: Vec<f64>,
     of: Vec<Vec<f64>>,
 }
 
-impl Weights {
+impl RobustWeights {
     fn of(residuals: &[Vec<f64>]) -> Option<Self> {
         let noise: Vec<f64> = residuals.iter().map(|r| robust_sd(r).max(1e-9)).collect();
         if noise.iter().any(|sd| !sd.is_finite()) {
             return None;
         }
         let weigh = |(r, sd): (&Vec<f64>, &f64)| r.iter().map(|r| huber(r / sd, HUBER) / (sd * sd)).collect::<Vec<_>>();
-        Some(Weights { of: residuals.iter().zip(&noise).map(weigh).collect(), noise })
+        Some(RobustWeights { of: residuals.iter().zip(&noise).map(weigh).collect(), noise })
     }
 
     fn cost(&self, residuals: &[Vec<f64>]) -> f64 {
@@ -103,16 +103,16 @@ impl Weights {
 }
 
 /// Residuals at `values`, and the products of their weighted derivatives by each unknown, with themselves last.
-struct System {
+struct Linearised {
     cost: f64,
     grams: Grams,
 }
 
-impl System {
+impl Linearised {
     fn at(
         unknowns: &[Unknown],
         values: &[f64],
-        weights: &Weights,
+        weights: &RobustWeights,
         blocks: &[u32],
         residuals: &Residuals,
     ) -> Option<Self> {
@@ -123,7 +123,7 @@ impl System {
         let rows = vec![blocks.to_vec(); here.len()];
         let stretches = blocks.iter().max().map_or(0, |last| *last as usize + 1);
         let grams = Grams::new(&columns.iter().collect::<Vec<_>>(), &rows, stretches);
-        grams.sum.iter().all(|x| x.is_finite()).then(|| System { cost: weights.cost(&here), grams })
+        grams.sum.iter().all(|x| x.is_finite()).then(|| Linearised { cost: weights.cost(&here), grams })
     }
 
     /// Where the squares fall: J'(measured - predicted).

@@ -1,6 +1,6 @@
 //! Several flights as one set of samples, split in time.
 
-use super::flight::Flight;
+use super::flight::PreparedFlight;
 use crate::flight::spans::length;
 use crate::insight::quality::Quality;
 
@@ -15,7 +15,7 @@ const BLOCKS: f64 = 100.0;
 
 /// Which samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum DataPart {
     Train,
     Validation,
     All,
@@ -24,7 +24,7 @@ pub enum Part {
 /// All flights, in the order given.
 #[derive(Clone, Debug)]
 pub struct Data {
-    pub flights: Vec<Flight>,
+    pub flights: Vec<PreparedFlight>,
     /// Number of usable samples before which the training part ends.
     cut: usize,
 }
@@ -39,7 +39,7 @@ impl Data {
         let mut first_block = 0;
         let mut flights = Vec::new();
         for quality in logs {
-            let flight = Flight::new(quality, first_block, block_s);
+            let flight = PreparedFlight::new(quality, first_block, block_s);
             first_block = flight.block.last().map_or(first_block, |last| last + 1);
             flights.push(flight);
         }
@@ -48,7 +48,7 @@ impl Data {
     }
 
     /// The usable samples of `part` for which `known(flight, sample)` holds.
-    pub fn choose(&self, part: Part, known: impl Fn(usize, usize) -> bool) -> Chosen {
+    pub fn choose(&self, part: DataPart, known: impl Fn(usize, usize) -> bool) -> Chosen {
         let mut seen = 0;
         let mut chosen = vec![Vec::new(); self.flights.len()];
         for (f, flight) in self.flights.iter().enumerate() {
@@ -56,9 +56,9 @@ impl Data {
                 let train = seen < self.cut;
                 seen += 1;
                 let wanted = match part {
-                    Part::Train => train,
-                    Part::Validation => !train,
-                    Part::All => true,
+                    DataPart::Train => train,
+                    DataPart::Validation => !train,
+                    DataPart::All => true,
                 };
                 if wanted && known(f, i) {
                     chosen[f].push(i);
@@ -79,7 +79,7 @@ impl Data {
     }
 
     /// A signal of every flight.
-    pub fn signals(&self, of: impl Fn(&Flight) -> Vec<f64>) -> Vec<Vec<f64>> {
+    pub fn signals(&self, of: impl Fn(&PreparedFlight) -> Vec<f64>) -> Vec<Vec<f64>> {
         self.flights.iter().map(of).collect()
     }
 

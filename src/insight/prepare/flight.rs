@@ -16,7 +16,7 @@ const VOLTAGE_HZ: f64 = 5.0;
 
 /// One flight, ready to fit.
 #[derive(Clone, Debug)]
-pub struct Flight {
+pub struct PreparedFlight {
     pub quality: Quality,
     /// Times of the IMU, s.
     pub time: Vec<f64>,
@@ -31,7 +31,7 @@ pub struct Flight {
     pub block: Vec<u32>,
 }
 
-impl Flight {
+impl PreparedFlight {
     /// `first_block` is the number of its first stretch, `block_s` their length.
     pub fn new(quality: Quality, first_block: u32, block_s: f64) -> Self {
         let log = &quality.log;

@@ -1,6 +1,6 @@
 //! Sensors at the end of their range.
 
-use super::{Finding, Severity};
+use super::{LogFinding, Severity};
 use crate::flight::Log;
 use crate::flight::spans::{Span, around};
 
@@ -12,7 +12,7 @@ const LEAST: [f64; 2] = [8.0, 30.0];
 const MARGIN_S: f64 = 0.1;
 
 /// Times at which a rate or a specific force sits at its largest size.
-pub fn find(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
+pub fn find(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let imu = &log.imu;
     let mut holes = Vec::new();
     for (k, name) in NAMES.into_iter().enumerate() {
@@ -31,7 +31,7 @@ pub fn find(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
                 continue;
             }
             let what = format!("{name} stays at its {side} value, {:.1}, {} times", sign * most, spans.len());
-            findings.push(Finding::new(Severity::Warning, "clipping", "imu", what, "these times are left out"));
+            findings.push(LogFinding::new(Severity::Warning, "clipping", "imu", what, "these times are left out"));
             holes.extend(spans);
         }
     }

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// A group of parameters, and whether the log tells them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Parameter {
+pub struct ParameterCoverage {
     /// What people call it.
     pub name: &'static str,
     /// Why the log cannot tell it; none where it can.
@@ -28,7 +28,7 @@ const SPEED: f64 = 3.0;
 const DISCHARGE_S: f64 = 20.0;
 
 /// The model's parameters in the order of its equations.
-pub fn told(log: &Log, usable: &[Span]) -> Vec<Parameter> {
+pub fn told(log: &Log, usable: &[Span]) -> Vec<ParameterCoverage> {
     let times: Vec<f64> = log.imu.time_s.iter().copied().filter(|&t| contain(usable, t)).collect();
     // 5 to 95 % of a signal in flight, if it was measured.
     let range = |x: Vec<f64>| {
@@ -49,7 +49,8 @@ pub fn told(log: &Log, usable: &[Span]) -> Vec<Parameter> {
         Some(_) => None,
     };
     let mut out = Vec::new();
-    let mut tell = |name, why_not: Option<String>| out.push(Parameter { name, why_not: brief.clone().or(why_not) });
+    let mut tell =
+        |name, why_not: Option<String>| out.push(ParameterCoverage { name, why_not: brief.clone().or(why_not) });
     for (k, name) in ["roll response", "pitch response", "yaw response"].into_iter().enumerate() {
         tell(name, spread(command(k), RATE_SPREAD, "rad/s", "rate setpoint"));
     }

@@ -1,6 +1,6 @@
 //! Whether odometry and IMU share a clock: rotations seen by both must happen at the same time.
 
-use super::{Finding, Severity};
+use super::{LogFinding, Severity};
 use crate::base::stats::median;
 use crate::flight::series::interpolated;
 use crate::flight::{Log, Stream};
@@ -82,7 +82,7 @@ fn mismatch(imu: &Stream<6>, integrals: &[Vec<f64>; 3], turns: &Turns, offset: f
 }
 
 /// Moves the odometry's clock to the IMU's where both saw the same turns at different times; by how much, s.
-pub fn align(log: &mut Log, findings: &mut Vec<Finding>) -> f64 {
+pub fn align(log: &mut Log, findings: &mut Vec<LogFinding>) -> f64 {
     let mut turns = turns(&log.odometry);
     let size = |turn: &[f64; 3]| turn.iter().map(|x| x * x).sum::<f64>().sqrt();
     let telling: Vec<bool> = turns.measured.iter().map(|turn| size(turn) > LEAST_TURN_RAD).collect();
@@ -114,7 +114,7 @@ pub fn align(log: &mut Log, findings: &mut Vec<Finding>) -> f64 {
         if offset < 0.0 { "after" } else { "before" }
     );
     let so = "the odometry's clock is moved to the IMU's";
-    findings.push(Finding::new(Severity::Warning, "clock_offset", "odometry", what, so));
+    findings.push(LogFinding::new(Severity::Warning, "clock_offset", "odometry", what, so));
     log.odometry.time_s.iter_mut().for_each(|t| *t += offset);
     offset
 }

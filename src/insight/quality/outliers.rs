@@ -1,6 +1,6 @@
 //! Velocities that no vehicle could have reached, such as a glitch of motion capture.
 
-use super::{Finding, Severity};
+use super::{LogFinding, Severity};
 use crate::base::stats::median;
 use crate::flight::Log;
 
@@ -9,7 +9,7 @@ const JUMP_M_S: f64 = 1.0;
 const MOST_M_S2: f64 = 100.0;
 
 /// Counts velocities far from the median of the five around them. Fits are robust against them.
-pub fn count(log: &Log, findings: &mut Vec<Finding>) {
+pub fn count(log: &Log, findings: &mut Vec<LogFinding>) {
     let (times, rows) = (&log.odometry.time_s, &log.odometry.rows);
     let off = |i: usize, k: usize| {
         let around: Vec<f64> = rows[i - 2..=i + 2].iter().map(|row| row[k]).collect();
@@ -18,6 +18,12 @@ pub fn count(log: &Log, findings: &mut Vec<Finding>) {
     let jumps = (2..rows.len().saturating_sub(2)).filter(|&i| (7..10).any(|k| off(i, k))).count();
     if jumps > 0 {
         let what = format!("{jumps} velocity samples that no vehicle could reach from those around them");
-        findings.push(Finding::new(Severity::Note, "outliers", "odometry", what, "they weigh little: fits are robust"));
+        findings.push(LogFinding::new(
+            Severity::Note,
+            "outliers",
+            "odometry",
+            what,
+            "they weigh little: fits are robust",
+        ));
     }
 }

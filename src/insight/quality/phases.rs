@@ -1,6 +1,6 @@
 //! When the vehicle flies: not on the ground, not hitting anything.
 
-use super::{Finding, Severity};
+use super::{LogFinding, Severity};
 use crate::base::stats::{mean, median};
 use crate::flight::Log;
 use crate::flight::series::held;
@@ -28,7 +28,7 @@ const TOUCH_MARGIN_S: f64 = 1.0;
 const END_MARGIN_S: f64 = 0.5;
 
 /// Times around impacts; from the last ones to the end of the log where it ends soon after.
-pub fn impacts(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
+pub fn impacts(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let imu = &log.imu;
     let hit = |i: usize| {
         let [.., x, y, z] = imu.rows[i];
@@ -41,11 +41,11 @@ pub fn impacts(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
         last[1] = end;
         let what = format!("impacts until the log ends at {end:.1} s");
         let so = "taken for a crash; nothing after it is used";
-        findings.push(Finding::new(Severity::Warning, "crash", "imu", what, so).during(*last));
+        findings.push(LogFinding::new(Severity::Warning, "crash", "imu", what, so).during(*last));
     }
     for hole in holes.iter().filter(|hole| hole[1] < end) {
         let what = format!("specific force beyond {IMPACT} m/s2 across the thrust");
-        findings.push(Finding::new(Severity::Warning, "impact", "imu", what, "this time is left out").during(*hole));
+        findings.push(LogFinding::new(Severity::Warning, "impact", "imu", what, "this time is left out").during(*hole));
     }
     holes
 }
@@ -63,11 +63,11 @@ fn effort(log: &Log) -> Option<Vec<f64>> {
 }
 
 /// Times at which the rotors do far less than carry the vehicle and yet it neither turns nor falls.
-pub fn ground(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
+pub fn ground(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let imu = &log.imu;
     let Some(effort) = effort(log) else {
         let what = "no thrust command and no rotor speed: time on the ground cannot be told".into();
-        findings.push(Finding::new(Severity::Note, "ground", "imu", what, "all of the log is taken for flight"));
+        findings.push(LogFinding::new(Severity::Note, "ground", "imu", what, "all of the log is taken for flight"));
         return Vec::new();
     };
     let mut bins: Vec<(Span, f64, bool)> = Vec::new();
@@ -108,11 +108,11 @@ pub fn ground(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
     let mut holes = joined(holes);
     for hole in &holes {
         let what = format!("{:.1} s on the ground", hole[1] - hole[0]);
-        findings.push(Finding::new(Severity::Note, "ground", "imu", what, "this time is left out").during(*hole));
+        findings.push(LogFinding::new(Severity::Note, "ground", "imu", what, "this time is left out").during(*hole));
     }
     if length(&without([start, end], &holes)) == 0.0 {
         let what = "the vehicle never flies".into();
-        findings.push(Finding::new(Severity::Problem, "ground", "imu", what, "nothing can be identified"));
+        findings.push(LogFinding::new(Severity::Problem, "ground", "imu", what, "nothing can be identified"));
     }
     holes.push([end - END_MARGIN_S, end + BIN_S]);
     joined(holes)

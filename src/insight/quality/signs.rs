@@ -1,7 +1,7 @@
 //! Whether axes, signs and frames make sense together.
 
 use super::offset::{integrals, integrated, turns};
-use super::{Finding, Severity};
+use super::{LogFinding, Severity};
 use crate::base::stats::{correlation, mean, median};
 use crate::flight::Log;
 use crate::flight::series::{held, period};
@@ -16,7 +16,7 @@ const DELAYS_S: [f64; 4] = [0.0, 0.02, 0.05, 0.1];
 const CLEAR: f64 = 0.5;
 
 /// Adds what contradicts itself within the `usable` spans.
-pub fn judge(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
+pub fn judge(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
     let chosen: Vec<usize> = (0..log.imu.len()).filter(|&i| contain(usable, log.imu.time_s[i])).collect();
     if chosen.len() < 100 {
         return;
@@ -28,12 +28,12 @@ pub fn judge(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
     velocity(log, usable, findings);
 }
 
-fn problem(kind: &'static str, stream: &'static str, what: String, so: &str, findings: &mut Vec<Finding>) {
-    findings.push(Finding::new(Severity::Problem, kind, stream, what, so));
+fn problem(kind: &'static str, stream: &'static str, what: String, so: &str, findings: &mut Vec<LogFinding>) {
+    findings.push(LogFinding::new(Severity::Problem, kind, stream, what, so));
 }
 
 /// Rates follow the setpoints of their own axis, in the same direction.
-fn setpoints(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
+fn setpoints(log: &Log, chosen: &[usize], findings: &mut Vec<LogFinding>) {
     let gyro: [Vec<f64>; 3] = std::array::from_fn(|k| chosen.iter().map(|&i| log.imu.rows[i][k]).collect());
     for axis in 0..3 {
         let setpoint = log.setpoint.column(axis);
@@ -62,7 +62,7 @@ fn setpoints(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
 }
 
 /// In flight the thrust points along +z.
-fn upright(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
+fn upright(log: &Log, chosen: &[usize], findings: &mut Vec<LogFinding>) {
     let middle: [f64; 3] =
         std::array::from_fn(|k| median(&chosen.iter().map(|&i| log.imu.rows[i][3 + k]).collect::<Vec<_>>()));
     let so = "turn the IMU in a mapping (`rotation_deg`, or body = \"FRD\")";
@@ -77,7 +77,7 @@ fn upright(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
 }
 
 /// The attitude turns as the gyro says.
-fn attitude(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
+fn attitude(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
     let turns = turns(&log.odometry);
     let integrals = integrals(&log.imu);
     for (k, axis) in AXES.into_iter().enumerate() {
@@ -98,7 +98,7 @@ fn attitude(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
 }
 
 /// Specific force turned into the world carries the vehicle against gravity.
-fn gravity(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
+fn gravity(log: &Log, chosen: &[usize], findings: &mut Vec<LogFinding>) {
     let times: Vec<f64> = chosen.iter().map(|&i| log.imu.time_s[i]).collect();
     let q: [Vec<f64>; 4] = std::array::from_fn(|k| held(&log.odometry.time_s, &log.odometry.column(3 + k), &times));
     let lift: Vec<f64> = (0..chosen.len())
@@ -118,7 +118,7 @@ fn gravity(log: &Log, chosen: &[usize], findings: &mut Vec<Finding>) {
 }
 
 /// Velocity is the change of position.
-fn velocity(log: &Log, usable: &[Span], findings: &mut Vec<Finding>) {
+fn velocity(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
     let odometry = &log.odometry;
     let times = &odometry.time_s;
     // Over a tenth of a second, noise of the position matters little.

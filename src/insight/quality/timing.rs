@@ -1,6 +1,6 @@
 //! Time stamps: order, repetition, gaps; and rows that only repeat the one before.
 
-use super::{Finding, Severity, Summary};
+use super::{LogFinding, Severity, StreamSummary};
 use crate::flight::series::period;
 use crate::flight::spans::{Span, joined};
 use crate::flight::{Log, Stream};
@@ -15,10 +15,10 @@ const BRIDGED_S: f64 = 0.05;
 const GAPS_TOLD: usize = 5;
 
 /// Every stream in ascending time; of rows that repeat the one before in a stream that mostly does, the first.
-pub fn repair(log: &Log, findings: &mut Vec<Finding>) -> (Log, Vec<Summary>) {
+pub fn repair(log: &Log, findings: &mut Vec<LogFinding>) -> (Log, Vec<StreamSummary>) {
     let mut out = log.clone();
     let mut summaries = Vec::new();
-    let mut each = |stream: Option<Summary>| summaries.extend(stream);
+    let mut each = |stream: Option<StreamSummary>| summaries.extend(stream);
     each(mend("setpoint", &mut out.setpoint, false, findings));
     each(mend("imu", &mut out.imu, false, findings));
     each(mend("odometry", &mut out.odometry, true, findings));
@@ -31,8 +31,8 @@ fn mend<const N: usize>(
     name: &'static str,
     stream: &mut Stream<N>,
     thin: bool,
-    findings: &mut Vec<Finding>,
-) -> Option<Summary> {
+    findings: &mut Vec<LogFinding>,
+) -> Option<StreamSummary> {
     let samples = stream.len();
     let mut last = f64::NEG_INFINITY;
     let (mut kept, mut backward, mut repeated, mut unreadable) = (Stream::default(), 0, 0, 0);
@@ -54,14 +54,14 @@ fn mend<const N: usize>(
     ] {
         if count > 0 {
             let what = format!("{count} of {samples} rows {what}");
-            findings.push(Finding::new(Severity::Warning, "time_stamps", name, what, "these rows are left out"));
+            findings.push(LogFinding::new(Severity::Warning, "time_stamps", name, what, "these rows are left out"));
         }
     }
     let same = |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).all(|(a, b)| a == b || a.is_nan() && b.is_nan());
     let fresh = |i: usize| i == 0 || !same(&kept.rows[i], &kept.rows[i - 1]);
     let fresh_rows: Vec<usize> = (0..kept.len()).filter(|&i| fresh(i)).collect();
     let share = fresh_rows.len() as f64 / kept.len().max(1) as f64;
-    let summary = Summary {
+    let summary = StreamSummary {
         stream: name,
         samples,
         rate_hz: kept
@@ -75,7 +75,7 @@ fn mend<const N: usize>(
     };
     if thin && !kept.is_empty() && share < HELD {
         let what = format!("only {:.0} % of the rows are fresh, the others repeat the one before", 100.0 * share);
-        findings.push(Finding::new(Severity::Note, "held_samples", name, what, "only fresh rows are used"));
+        findings.push(LogFinding::new(Severity::Note, "held_samples", name, what, "only fresh rows are used"));
         kept = Stream {
             time_s: fresh_rows.iter().map(|&i| kept.time_s[i]).collect(),
             rows: fresh_rows.iter().map(|&i| kept.rows[i]).collect(),
@@ -86,7 +86,7 @@ fn mend<const N: usize>(
 }
 
 /// Times without IMU or, where there are commands, without them.
-pub fn gaps(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
+pub fn gaps(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let mut holes = of("imu", &log.imu.time_s, findings);
     if let (Some(&first), Some(&last)) = (log.setpoint.time_s.first(), log.setpoint.time_s.last()) {
         holes.extend(of("setpoint", &log.setpoint.time_s, findings));
@@ -95,18 +95,18 @@ pub fn gaps(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
     joined(holes)
 }
 
-fn of(name: &'static str, times: &[f64], findings: &mut Vec<Finding>) -> Vec<Span> {
+fn of(name: &'static str, times: &[f64], findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let longest = (GAP_PERIODS * period(times)).max(BRIDGED_S);
     let gaps: Vec<Span> = times.windows(2).filter(|pair| pair[1] - pair[0] > longest).map(|p| [p[0], p[1]]).collect();
     let so = "this time is left out";
     for gap in gaps.iter().take(GAPS_TOLD) {
         let what = format!("no sample for {:.2} s", gap[1] - gap[0]);
-        findings.push(Finding::new(Severity::Warning, "gap", name, what, so).during(*gap));
+        findings.push(LogFinding::new(Severity::Warning, "gap", name, what, so).during(*gap));
     }
     if let Some(rest) = gaps.get(GAPS_TOLD..).filter(|rest| !rest.is_empty()) {
         let total: f64 = rest.iter().map(|gap| gap[1] - gap[0]).sum();
         let what = format!("{} more gaps, {total:.1} s in all", rest.len());
-        findings.push(Finding::new(Severity::Warning, "gap", name, what, so));
+        findings.push(LogFinding::new(Severity::Warning, "gap", name, what, so));
     }
     gaps
 }

@@ -1,6 +1,6 @@
 //! Turning that nobody asked for: a vehicle thrown into the air, bumped or out of control. No model of its response describes that.
 
-use super::{Finding, Severity};
+use super::{LogFinding, Severity};
 use crate::flight::Log;
 use crate::flight::series::held;
 use crate::flight::spans::{Span, around, length};
@@ -17,7 +17,7 @@ const MOST: f64 = 0.2;
 const OFTEN: usize = 20;
 
 /// Times at which a body rate is far outside the range of its recent commands.
-pub fn find(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
+pub fn find(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let times = &log.imu.time_s;
     let mut loose = vec![false; times.len()];
     for axis in 0..3 {
@@ -33,12 +33,12 @@ pub fn find(log: &Log, findings: &mut Vec<Finding>) -> Vec<Span> {
     if length(&holes) > MOST * (times[times.len() - 1] - times[0]) || holes.len() > OFTEN {
         let what = format!("it turns {} times as no command of the {MEMORY_S} s before asked", holes.len());
         let did = "nothing is left out; their clocks may run apart, or the mapping may be wrong";
-        findings.push(Finding::new(Severity::Note, "tumbling", "setpoint", what, did));
+        findings.push(LogFinding::new(Severity::Note, "tumbling", "setpoint", what, did));
         return Vec::new();
     }
     for hole in &holes {
         let what = "it turns as no command asked: thrown, bumped or out of control".into();
-        findings.push(Finding::new(Severity::Note, "tumbling", "imu", what, "this time is left out").during(*hole));
+        findings.push(LogFinding::new(Severity::Note, "tumbling", "imu", what, "this time is left out").during(*hole));
     }
     holes
 }

@@ -2,7 +2,7 @@
 
 use crate::base::error::Result;
 use crate::insight::identify::rates::Compared;
-use crate::insight::identify::result::Channel;
+use crate::insight::identify::result::ComparedChannel;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, Area, Chart, legend, mesh, range};
 use plotters::prelude::*;
@@ -16,7 +16,7 @@ const PREDICTED: RGBColor = RGBColor(230, 140, 0);
 
 /// An SVG of one channel: the ten seconds around the border between training and validation above, all of the residual
 /// below.
-pub fn channel(channel: &Channel) -> Result<String> {
+pub fn channel(channel: &ComparedChannel) -> Result<String> {
     plot::svg(HEIGHT, |root| {
         let (above, below) = root.split_vertically(HEIGHT * 6 / 10);
         signals(&above, channel)?;
@@ -25,7 +25,7 @@ pub fn channel(channel: &Channel) -> Result<String> {
 }
 
 /// Samples joined end to end, in the order of flight: seconds of data, whatever was left out between.
-fn joined(channel: &Channel) -> (Vec<[f64; 3]>, f64) {
+fn joined(channel: &ComparedChannel) -> (Vec<[f64; 3]>, f64) {
     let mut out = Vec::new();
     let mut clock = 0.0;
     let mut border = 0.0;
@@ -41,7 +41,7 @@ fn joined(channel: &Channel) -> (Vec<[f64; 3]>, f64) {
     (out, border)
 }
 
-fn signals(area: &Area, channel: &Channel) -> Result<()> {
+fn signals(area: &Area, channel: &ComparedChannel) -> Result<()> {
     let (all, border) = joined(channel);
     let shown: Vec<[f64; 3]> = all.into_iter().filter(|p| (p[0] - border).abs() <= 5.0).collect();
     // Room for the legend.
@@ -66,7 +66,7 @@ fn signals(area: &Area, channel: &Channel) -> Result<()> {
     divide(&mut chart, border)
 }
 
-fn residual(area: &Area, channel: &Channel) -> Result<()> {
+fn residual(area: &Area, channel: &ComparedChannel) -> Result<()> {
     let (all, border) = joined(channel);
     let step = all.len().div_ceil(POINTS).max(1);
     // Of each step the largest, so that nothing is hidden.

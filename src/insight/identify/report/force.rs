@@ -3,14 +3,14 @@
 use crate::base::check::Invalid;
 use crate::insight::identify::estimate::Estimate;
 use crate::insight::identify::force::{DRAG_AT, Force, TAU, THRUST, Terms};
-use crate::insight::identify::result::{Channel, Identification, Response};
+use crate::insight::identify::result::{ComparedChannel, Identification, Response};
 use crate::insight::identify::solve::Solution;
-use crate::insight::identify::{Options, bias};
-use crate::insight::prepare::data::{Data, Part};
+use crate::insight::identify::{IdentifyOptions, bias};
+use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::dynamics::drag::{ellipsoid, semi_axes};
 
 /// Fits the thrust curve with as many powers as the flight settles, its time constant, and the drag.
-pub fn fill(data: &Data, options: &Options, out: &mut Identification) {
+pub fn report(data: &Data, options: &IdentifyOptions, out: &mut Identification) {
     if let Some(why) = data.why_not("thrust curve") {
         out.response[3] = Response { tau_s: Estimate::unknown(&why), ..Response::default() };
         out.thrust_n = std::array::from_fn(|_| Estimate::unknown(&why));
@@ -37,7 +37,7 @@ pub fn fill(data: &Data, options: &Options, out: &mut Identification) {
         let terms =
             Terms { thrust: [curve[0], curve[1], curve[2], curve[3], voltage, voltage], drag: no_drag.is_none() };
         let force = Force::new(data, terms, taken_off, given, options.force_cutoff_hz);
-        let Some(all) = force.fit(Part::All, None) else { continue };
+        let Some(all) = force.fit(DataPart::All, None) else { continue };
         let mut vehicle = out.vehicle.clone();
         vehicle.thrust_n = std::array::from_fn(|k| all.values[THRUST + k] * vehicle.mass_kg);
         let trouble = vehicle.check_thrust().err();
@@ -138,12 +138,13 @@ fn keep_drag(all: &Solution, no_drag: Option<String>, out: &mut Identification) 
 }
 
 fn validate_force(force: &Force, all: &Solution, bias: Option<&Solution>, out: &mut Identification) {
-    let Some(train) = force.fit(Part::Train, Some(all)) else {
+    let Some(train) = force.fit(DataPart::Train, Some(all)) else {
         return out.remark("thrust: the training part alone is too short; no validation".into());
     };
     let shown: &[usize] = if out.drag.k_1_m[0].value.is_some() { &[2, 0, 1] } else { &[2] };
     for &k in shown {
-        let (learned, validation) = (force.compare(Part::Train, &train, k), force.compare(Part::Validation, &train, k));
+        let (learned, validation) =
+            (force.compare(DataPart::Train, &train, k), force.compare(DataPart::Validation, &train, k));
         let score = validation.score();
         if k == 2 {
             out.response[3] = Response {
@@ -158,7 +159,7 @@ fn validate_force(force: &Force, all: &Solution, bias: Option<&Solution>, out: &
             };
         }
         let name = format!("specific force {}", ["x", "y", "z"][k]);
-        out.channels.push(Channel::new(&name, "m/s2", 1.0, &learned, &validation));
+        out.channels.push(ComparedChannel::new(&name, "m/s2", 1.0, &learned, &validation));
     }
     if out.drag.k_1_m[0].value.is_some() {
         out.drag.flown_m_s = out.fastest_m_s;

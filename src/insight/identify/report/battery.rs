@@ -2,11 +2,11 @@
 
 use crate::insight::identify::battery;
 use crate::insight::identify::estimate::Estimate;
-use crate::insight::identify::result::{Channel, Identification};
-use crate::insight::prepare::data::{Data, Part};
+use crate::insight::identify::result::{ComparedChannel, Identification};
+use crate::insight::prepare::data::{Data, DataPart};
 
 /// Fits rate and initial voltage.
-pub fn fill(data: &Data, out: &mut Identification) {
+pub fn report(data: &Data, out: &mut Identification) {
     let unknown = |why: String, out: &mut Identification| {
         out.battery.initial_v = Estimate::unknown(&why);
         out.battery.rate_v_s = Estimate::unknown(&why);
@@ -15,13 +15,13 @@ pub fn fill(data: &Data, out: &mut Identification) {
     if let Some(why) = data.why_not("battery") {
         return unknown(why, out);
     }
-    let (Some(train), Some(all)) = (battery::fit(data, Part::Train), battery::fit(data, Part::All)) else {
+    let (Some(train), Some(all)) = (battery::fit(data, DataPart::Train), battery::fit(data, DataPart::All)) else {
         return unknown("too few stretches of flight for a fit".into(), out);
     };
-    let validation = battery::compare(data, Part::Validation, &train);
+    let validation = battery::compare(data, DataPart::Validation, &train);
     out.battery.initial_v = Estimate::of(&all, battery::INITIAL);
     out.battery.rate_v_s = Estimate::of(&all, battery::RATE);
-    let whole = battery::compare(data, Part::All, &all);
+    let whole = battery::compare(data, DataPart::All, &all);
     let lowest = whole.predicted.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = all.values[battery::INITIAL..].iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let base = out.vehicle.battery;
@@ -35,7 +35,7 @@ pub fn fill(data: &Data, out: &mut Identification) {
     }
     out.remember("battery.full_v", out.battery.initial_v.interval());
     out.remember("battery.rate_v_s", out.battery.rate_v_s.interval());
-    let train = battery::compare(data, Part::Train, &train);
+    let train = battery::compare(data, DataPart::Train, &train);
     out.battery.score = Some(validation.score());
-    out.channels.push(Channel::new("voltage", "V", 1.0, &train, &validation));
+    out.channels.push(ComparedChannel::new("voltage", "V", 1.0, &train, &validation));
 }

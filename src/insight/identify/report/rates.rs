@@ -1,11 +1,11 @@
 //! The response of one rate axis, into the result.
 
 use crate::insight::identify::estimate::Estimate;
-use crate::insight::identify::rates::{Axis, Compared};
-use crate::insight::identify::result::{Channel, Identification, Response};
+use crate::insight::identify::rates::{Compared, RateAxis};
+use crate::insight::identify::result::{ComparedChannel, Identification, Response};
 use crate::insight::identify::solve::Solution;
-use crate::insight::identify::{AXES, Options};
-use crate::insight::prepare::data::{Data, Part};
+use crate::insight::identify::{AXES, IdentifyOptions};
+use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::vehicle::{MaxRates, TimeConstants};
 
 /// A pure delay is remarked on where it is at least this long, s, and lowers the validation error at least to this share.
@@ -16,7 +16,7 @@ const EXPLAINED: f64 = 0.9995;
 
 /// One axis, fitted on the training part, on all of it, and with a delay where one may be missing.
 pub struct Fitted<'a> {
-    rate: Axis<'a>,
+    rate: RateAxis<'a>,
     train: Solution,
     all: Solution,
     validation: Compared,
@@ -24,16 +24,16 @@ pub struct Fitted<'a> {
 }
 
 /// Fits `axis` (0 roll, 1 pitch, 2 yaw), or says why the logs cannot tell it.
-pub fn fit<'a>(data: &'a Data, axis: usize, options: &Options) -> Result<Fitted<'a>, String> {
+pub fn fit<'a>(data: &'a Data, axis: usize, options: &IdentifyOptions) -> Result<Fitted<'a>, String> {
     if let Some(why) = data.why_not(&format!("{} response", AXES[axis])) {
         return Err(why);
     }
-    let rate = Axis::new(data, axis, options.rate_cutoff_hz);
-    let (Some(train), Some(all)) = (rate.fit(Part::Train, false), rate.fit(Part::All, false)) else {
+    let rate = RateAxis::new(data, axis, options.rate_cutoff_hz);
+    let (Some(train), Some(all)) = (rate.fit(DataPart::Train, false), rate.fit(DataPart::All, false)) else {
         return Err("too few stretches of flight for a fit".into());
     };
-    let validation = rate.compare(Part::Validation, &train);
-    let late = if validation.score().r2 < EXPLAINED { rate.fit(Part::Train, true) } else { None };
+    let validation = rate.compare(DataPart::Validation, &train);
+    let late = if validation.score().r2 < EXPLAINED { rate.fit(DataPart::Train, true) } else { None };
     Ok(Fitted { rate, train, all, validation, late })
 }
 
@@ -58,7 +58,7 @@ pub fn keep(fitted: Result<Fitted, String>, axis: usize, out: &mut Identificatio
         rmse: Some(score.rmse * degrees),
         mae: Some(score.mae * degrees),
         r2: Some(score.r2),
-        n_train: rate.compare(Part::Train, &train).measured.len(),
+        n_train: rate.compare(DataPart::Train, &train).measured.len(),
         n_validation: score.n,
         unit: "deg/s",
     };
@@ -77,7 +77,7 @@ pub fn keep(fitted: Result<Fitted, String>, axis: usize, out: &mut Identificatio
         ));
     }
     if let Some(late) = late {
-        let better = rate.compare(Part::Validation, &late).score();
+        let better = rate.compare(DataPart::Validation, &late).score();
         if late.values[3] > TELLING_DELAY_S && better.rmse < TELLING_GAIN * score.rmse {
             out.remark(format!(
                 "{name}: a pure delay of {:.0} ms before a lag of {:.0} ms would bring R2 from {:.3} to {:.3}; the model has none",
@@ -88,11 +88,11 @@ pub fn keep(fitted: Result<Fitted, String>, axis: usize, out: &mut Identificatio
             ));
         }
     }
-    out.channels.push(Channel::new(
+    out.channels.push(ComparedChannel::new(
         &format!("{name} rate"),
         "deg/s",
         degrees,
-        &rate.compare(Part::Train, &train),
+        &rate.compare(DataPart::Train, &train),
         &validation,
     ));
 }
