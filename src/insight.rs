@@ -1,5 +1,6 @@
 //! What flights say: whether a log is fit to learn from, the vehicle in it, and what the compact model gets wrong.
 
+pub mod criteria;
 pub mod diagnose;
 pub mod estimate;
 pub mod identify;

@@ -13,6 +13,7 @@ pub use coverage::ParameterCoverage;
 
 use crate::flight::spans::{self, Span};
 use crate::flight::{Log, Readable};
+use crate::insight::criteria::usable::SHORTEST_FLIGHT_S;
 use serde::Serialize;
 
 /// How bad a finding is.
@@ -117,7 +118,7 @@ pub fn check(log: &Log) -> Quality {
     holes.extend(tumbling::find(&log, &mut findings));
     let times = &log.imu.time_s;
     let mut usable = spans::without([times[0], times[times.len() - 1]], &holes);
-    usable.retain(|span| span[1] - span[0] >= phases::SHORTEST_S);
+    usable.retain(|span| span[1] - span[0] >= SHORTEST_FLIGHT_S.get());
     signs::judge(&log, &usable, &mut findings);
     outliers::count(&log, &mut findings);
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));

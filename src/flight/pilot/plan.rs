@@ -32,80 +32,17 @@ impl Plan {
     /// The manoeuvre of this kind after `flown` others of it. The first is flown at full size, and directions alternate.
     pub fn new(kind: Kind, flown: usize, view: &View, limits: &Limits, rng: &mut Sequence) -> Self {
         let sign = if flown.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let share = if flown == 0 { 1.0 } else { rng.unit() };
-        let size = |low: f64| low + (1.0 - low) * share;
+        let size = Size { sign, share: if flown == 0 { 1.0 } else { rng.unit() } };
         match kind {
             Kind::RollSteps | Kind::PitchSteps | Kind::YawSteps | Kind::RateSteps => {
-                let axis = kind as usize;
-                let axes: [bool; 3] = std::array::from_fn(|i| axis == i || axis == 3);
-                over_spot(view, rng.uniform([25.0, 60.0]), Box::new(RateSteps::new(axes)))
+                turning(kind, size, view, limits, rng)
             }
-            Kind::RollDoublets | Kind::PitchDoublets | Kind::YawDoublets => {
-                let axis = kind as usize - Kind::RollDoublets as usize;
-                let script = Sequenced::doublets(axis, sign, limits, rng);
-                over_spot(view, rng.uniform([25.0, 60.0]), Box::new(script))
-            }
-            Kind::RollFlip | Kind::PitchFlip => {
-                let axis = kind as usize - Kind::RollFlip as usize;
-                let script = Flip::new(axis, sign * size(0.85), rng.uniform([-1.0, limits.hover_command]));
-                over_spot(view, rng.uniform([38.0, 60.0]), Box::new(script))
-            }
-            Kind::YawSpin => {
-                let size = sign * size(0.5);
-                let spin = |size: f64| Segment { seconds: 0.9, command: Some([size, size]) };
-                over_spot(view, rng.uniform([25.0, 60.0]), Box::new(Sequenced::new(2, vec![spin(size), spin(-size)])))
-            }
-            Kind::ThrottleSteps => over_spot(view, rng.uniform([35.0, 50.0]), Box::new(ThrottleSteps::new())),
-            Kind::Punch => {
-                let seconds = rng.uniform([0.3, 1.0]);
-                over_spot(view, rng.uniform([16.0, 26.0]), throttle(&[(seconds, 1.0, 1.0), (0.3, -1.0, -1.0)]))
-            }
-            Kind::PunchTurns => {
-                let script = PunchTurns::new(sign * size(0.6), rng.uniform([0.15, 0.3]));
-                over_spot(view, rng.uniform([16.0, 24.0]), Box::new(script))
-            }
-            Kind::LowHover => {
-                let script = LowHover::new(rng.uniform([0.2, 0.35]));
-                Plan { low: true, ..over_spot(view, LOW_M, Box::new(script)) }
-            }
-            Kind::Chop => {
-                let seconds = rng.uniform([0.5, 1.6]);
-                over_spot(view, rng.uniform([58.0, 68.0]), throttle(&[(seconds, -1.0, -1.0), (0.2, 1.0, 1.0)]))
-            }
-            Kind::RampUp => {
-                over_spot(view, rng.uniform([38.0, 48.0]), throttle(&[(rng.uniform([0.8, 2.0]), -1.0, 1.0)]))
-            }
-            Kind::RampDown => {
-                over_spot(view, rng.uniform([18.0, 28.0]), throttle(&[(rng.uniform([0.8, 2.0]), 1.0, -1.0)]))
-            }
-            Kind::Forward | Kind::Backward | Kind::Left | Kind::Right => {
-                let nose = match kind {
-                    Kind::Forward => 0.0,
-                    Kind::Backward => PI,
-                    Kind::Left => FRAC_PI_2,
-                    _ => -FRAC_PI_2,
-                };
-                let speed = FASTEST * size(0.7);
-                let height = rng.uniform([22.0, 58.0]);
-                across(view, height, nose, rng, Course::new(speed, 0.0, 0.0, 3.2))
-            }
-            Kind::Climb | Kind::Descent => {
-                let (height, vertical) = match kind {
-                    Kind::Climb => (14.0, 18.0 * size(0.5)),
-                    _ => (70.0, -14.0 * size(0.3)),
-                };
-                let aside = rng.uniform([0.0, 6.0]);
-                across(view, height, 0.0, rng, Course::new(aside, vertical, 0.0, 3.8))
-            }
-            Kind::Dive => {
-                let (speed, vertical) = (FASTEST * size(0.5), -rng.uniform([5.0, 12.0]));
-                across(view, 66.0, 0.0, rng, Course::new(speed, vertical, 0.0, 3.2))
-            }
-            Kind::Circle => {
-                let (speed, radius) = (rng.uniform([10.0, 16.0]), rng.uniform([18.0, 28.0]));
-                let turn = sign * speed / radius;
-                across(view, rng.uniform([25.0, 55.0]), 0.0, rng, Course::new(speed, 0.0, turn, 4.0))
-            }
+            Kind::RollDoublets | Kind::PitchDoublets | Kind::YawDoublets => turning(kind, size, view, limits, rng),
+            Kind::RollFlip | Kind::PitchFlip | Kind::YawSpin => turning(kind, size, view, limits, rng),
+            Kind::ThrottleSteps | Kind::Punch | Kind::PunchTurns | Kind::LowHover => pushing(kind, size, view, rng),
+            Kind::Chop | Kind::RampUp | Kind::RampDown => pushing(kind, size, view, rng),
+            Kind::Forward | Kind::Backward | Kind::Left | Kind::Right => travelling(kind, size, view, rng),
+            Kind::Climb | Kind::Descent | Kind::Dive | Kind::Circle => travelling(kind, size, view, rng),
         }
     }
 
@@ -125,6 +62,113 @@ impl Plan {
         let vertical = if way.z.abs() < 3.0 { 0.0 } else { (0.9 * way.z).clamp(-8.0, 9.0) };
         let velocity = Vector3::new(over_ground.x, over_ground.y, vertical);
         Some(Demand { heading: self.heading, ..Demand::at(velocity) })
+    }
+}
+
+/// How large a manoeuvre is, and to which side.
+#[derive(Clone, Copy)]
+struct Size {
+    sign: f64,
+    /// 0 to 1, between the least that is worth it and the whole.
+    share: f64,
+}
+
+impl Size {
+    /// Between `low` and 1.
+    fn least(self, low: f64) -> f64 {
+        low + (1.0 - low) * self.share
+    }
+
+    fn signed(self, low: f64) -> f64 {
+        self.sign * self.least(low)
+    }
+}
+
+/// Steps, doublets, flips and spins of body rates, over the spot.
+fn turning(kind: Kind, size: Size, view: &View, limits: &Limits, rng: &mut Sequence) -> Plan {
+    match kind {
+        Kind::RollSteps | Kind::PitchSteps | Kind::YawSteps | Kind::RateSteps => {
+            let axis = kind as usize;
+            let axes: [bool; 3] = std::array::from_fn(|i| axis == i || axis == 3);
+            over_spot(view, rng.uniform([25.0, 60.0]), Box::new(RateSteps::new(axes)))
+        }
+        Kind::RollDoublets | Kind::PitchDoublets | Kind::YawDoublets => {
+            let axis = kind as usize - Kind::RollDoublets as usize;
+            let script = Sequenced::doublets(axis, size.sign, limits, rng);
+            over_spot(view, rng.uniform([25.0, 60.0]), Box::new(script))
+        }
+        Kind::RollFlip | Kind::PitchFlip => {
+            let axis = kind as usize - Kind::RollFlip as usize;
+            let script = Flip::new(axis, size.signed(0.85), rng.uniform([-1.0, limits.hover_command]));
+            over_spot(view, rng.uniform([38.0, 60.0]), Box::new(script))
+        }
+        // A yaw spin.
+        _ => {
+            let rate = size.signed(0.5);
+            let spin = |rate: f64| Segment { seconds: 0.9, command: Some([rate, rate]) };
+            over_spot(view, rng.uniform([25.0, 60.0]), Box::new(Sequenced::new(2, vec![spin(rate), spin(-rate)])))
+        }
+    }
+}
+
+/// What throttle does, over the spot.
+fn pushing(kind: Kind, size: Size, view: &View, rng: &mut Sequence) -> Plan {
+    match kind {
+        Kind::ThrottleSteps => over_spot(view, rng.uniform([35.0, 50.0]), Box::new(ThrottleSteps::new())),
+        Kind::Punch => {
+            let seconds = rng.uniform([0.3, 1.0]);
+            over_spot(view, rng.uniform([16.0, 26.0]), throttle(&[(seconds, 1.0, 1.0), (0.3, -1.0, -1.0)]))
+        }
+        Kind::PunchTurns => {
+            let script = PunchTurns::new(size.signed(0.6), rng.uniform([0.15, 0.3]));
+            over_spot(view, rng.uniform([16.0, 24.0]), Box::new(script))
+        }
+        Kind::LowHover => {
+            let script = LowHover::new(rng.uniform([0.2, 0.35]));
+            Plan { low: true, ..over_spot(view, LOW_M, Box::new(script)) }
+        }
+        Kind::Chop => {
+            let seconds = rng.uniform([0.5, 1.6]);
+            over_spot(view, rng.uniform([58.0, 68.0]), throttle(&[(seconds, -1.0, -1.0), (0.2, 1.0, 1.0)]))
+        }
+        Kind::RampUp => over_spot(view, rng.uniform([38.0, 48.0]), throttle(&[(rng.uniform([0.8, 2.0]), -1.0, 1.0)])),
+        // A ramp down.
+        _ => over_spot(view, rng.uniform([18.0, 28.0]), throttle(&[(rng.uniform([0.8, 2.0]), 1.0, -1.0)])),
+    }
+}
+
+/// Passes, climbs, descents and circles.
+fn travelling(kind: Kind, size: Size, view: &View, rng: &mut Sequence) -> Plan {
+    match kind {
+        Kind::Forward | Kind::Backward | Kind::Left | Kind::Right => {
+            let nose = match kind {
+                Kind::Forward => 0.0,
+                Kind::Backward => PI,
+                Kind::Left => FRAC_PI_2,
+                _ => -FRAC_PI_2,
+            };
+            let speed = FASTEST * size.least(0.7);
+            let height = rng.uniform([22.0, 58.0]);
+            across(view, height, nose, rng, Course::new(speed, 0.0, 0.0, 3.2))
+        }
+        Kind::Climb | Kind::Descent => {
+            let (height, vertical) = match kind {
+                Kind::Climb => (14.0, 18.0 * size.least(0.5)),
+                _ => (70.0, -14.0 * size.least(0.3)),
+            };
+            let aside = rng.uniform([0.0, 6.0]);
+            across(view, height, 0.0, rng, Course::new(aside, vertical, 0.0, 3.8))
+        }
+        Kind::Dive => {
+            let (speed, vertical) = (FASTEST * size.least(0.5), -rng.uniform([5.0, 12.0]));
+            across(view, 66.0, 0.0, rng, Course::new(speed, vertical, 0.0, 3.2))
+        }
+        // A circle.
+        _ => {
+            let (speed, radius) = (rng.uniform([10.0, 16.0]), rng.uniform([18.0, 28.0]));
+            let turn = size.sign * speed / radius;
+            across(view, rng.uniform([25.0, 55.0]), 0.0, rng, Course::new(speed, 0.0, turn, 4.0))
+        }
     }
 }
 

@@ -1,15 +1,13 @@
 //! Thrust and drag together, from the specific force along all three body axes (paper Eq. 6, 7 and 9).
 
-use super::rates::{Compared, TAU_S, TAUS_S, times};
+use super::rates::{Compared, TAUS_S, times};
 use super::solve::{Solution, Unknown, solve};
 use crate::base::stats::mean;
+use crate::insight::estimate::range::{DRAG_1_M, TIME_CONSTANT_S};
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::model::dynamics::force_in_body;
 use crate::model::thrust::specific_thrust;
 use nalgebra::{DMatrix, DVector};
-
-/// Bounds of the drag along an axis, 1/m.
-const DRAG: [f64; 2] = [0.0, 0.5];
 
 /// Which terms of the model are fitted; the others are zero, or given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,15 +130,16 @@ impl<'a> Force<'a> {
         let blocks = self.data.blocks(&chosen);
         let fixed = Unknown { start: 0.0, low: 0.0, high: 0.0, step: 0.0, linear: true };
         let mut unknowns = vec![fixed; UNKNOWNS];
-        unknowns[TAU] = Unknown { start: tau, low: TAU_S[0], high: TAU_S[1], step: 2e-5, linear: false };
+        unknowns[TAU] =
+            Unknown { start: tau, low: TIME_CONSTANT_S[0], high: TIME_CONSTANT_S[1], step: 2e-5, linear: false };
         for k in (0..6).filter(|&k| self.terms.thrust[k]) {
             unknowns[THRUST + k] = Unknown { start: c[k], low: -1e4, high: 1e4, step: 1e-3, linear: true };
         }
         if self.terms.drag {
             unknowns[DRAG_AT..DRAG_AT + 3].fill(Unknown {
                 start: 0.02,
-                low: DRAG[0],
-                high: DRAG[1],
+                low: DRAG_1_M[0],
+                high: DRAG_1_M[1],
                 step: 1e-4,
                 linear: false,
             });

@@ -2,10 +2,9 @@
 
 use super::solve::{Solution, Unknown, solve};
 use crate::base::stats::{Score, mean};
+use crate::insight::estimate::range::{RATE_GAIN, TIME_CONSTANT_S};
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 
-/// Bounds of every time constant, s.
-pub const TAU_S: [f64; 2] = [0.0005, 0.3];
 /// Time constants to start from.
 pub const TAUS_S: [f64; 8] = [0.001, 0.004, 0.008, 0.015, 0.03, 0.06, 0.12, 0.25];
 /// Delays to start from when asking whether one is missing, s.
@@ -54,8 +53,8 @@ impl<'a> RateAxis<'a> {
         };
         let [tau, late] = starts.map(|x| (cost(&x), x)).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
         let mut unknowns = vec![
-            Unknown { start: tau, low: TAU_S[0], high: TAU_S[1], step: 2e-5, linear: false },
-            Unknown { start: 1.0, low: 0.2, high: 5.0, step: 1e-3, linear: true },
+            Unknown { start: tau, low: TIME_CONSTANT_S[0], high: TIME_CONSTANT_S[1], step: 2e-5, linear: false },
+            Unknown { start: 1.0, low: RATE_GAIN[0], high: RATE_GAIN[1], step: 1e-3, linear: true },
             Unknown { start: 0.0, low: -2.0, high: 2.0, step: 1e-3, linear: true },
         ];
         if delay {

@@ -2,13 +2,11 @@
 
 use crate::flight::Stream;
 use crate::flight::series::period;
-
-/// Odometry slower than this is not integrated against, Hz: between two of its samples too much happens. Assumed.
-const LEAST_RATE_HZ: f64 = 40.0;
+use crate::insight::criteria::usable::ODOMETRY_RATE_HZ;
 
 /// Whether the odometry comes often enough.
 pub fn often_enough(odometry: &Stream<10>) -> bool {
-    !odometry.is_empty() && 1.0 / period(&odometry.time_s) >= LEAST_RATE_HZ
+    !odometry.is_empty() && 1.0 / period(&odometry.time_s) >= ODOMETRY_RATE_HZ.get()
 }
 
 /// First and last sample of stretches of `over_s` seconds, one after the other, of which `good` holds.

@@ -4,6 +4,7 @@ use super::{LogFinding, Severity};
 use crate::base::stats::median;
 use crate::flight::series::interpolated;
 use crate::flight::{Log, Stream};
+use crate::insight::criteria::consistent::{OFFSET_LEFT_S, OFFSET_MINIMUM, OFFSET_TURN_RAD, OFFSET_TURNS};
 use crate::model::attitude::{Quaternion, compose, rotation_vector};
 
 /// Offsets looked for, s.
@@ -11,11 +12,6 @@ const RANGE_S: f64 = 0.15;
 const STEP_S: f64 = 0.002;
 /// A rotation is taken over at least this time, so that noise of the attitude matters little, s.
 const OVER_S: f64 = 0.02;
-/// Offsets below this are left: about a sample.
-const LEAST_S: f64 = 0.003;
-/// Rotations fewer or smaller than these tell nothing.
-const LEAST_TURNS: usize = 200;
-const LEAST_TURN_RAD: f64 = 0.02;
 
 /// Rotation vectors between attitudes and the times at which they begin and end.
 pub struct Turns {
@@ -85,12 +81,12 @@ fn mismatch(imu: &Stream<6>, integrals: &[Vec<f64>; 3], turns: &Turns, offset: f
 pub fn align(log: &mut Log, findings: &mut Vec<LogFinding>) -> f64 {
     let mut turns = turns(&log.odometry);
     let size = |turn: &[f64; 3]| turn.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let telling: Vec<bool> = turns.measured.iter().map(|turn| size(turn) > LEAST_TURN_RAD).collect();
+    let telling: Vec<bool> = turns.measured.iter().map(|turn| size(turn) > OFFSET_TURN_RAD.get()).collect();
     let mut keep = telling.iter();
     turns.spans.retain(|_| *keep.next().unwrap_or(&false));
     let mut keep = telling.iter();
     turns.measured.retain(|_| *keep.next().unwrap_or(&false));
-    if turns.spans.len() < LEAST_TURNS {
+    if turns.spans.len() < OFFSET_TURNS.count() {
         return 0.0;
     }
     let integrals = integrals(&log.imu);
@@ -98,14 +94,14 @@ pub fn align(log: &mut Log, findings: &mut Vec<LogFinding>) -> f64 {
     let costs: Vec<f64> =
         (-steps..=steps).map(|i| mismatch(&log.imu, &integrals, &turns, f64::from(i) * STEP_S)).collect();
     let best = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(0);
-    if best == 0 || best + 1 == costs.len() || costs[best] > 0.5 * median(&costs) {
+    if best == 0 || best + 1 == costs.len() || costs[best] > OFFSET_MINIMUM.get() * median(&costs) {
         // No clear minimum: the signs are judged elsewhere.
         return 0.0;
     }
     let (a, b, c) = (costs[best - 1], costs[best], costs[best + 1]);
     let vertex = 0.5 * (a - c) / (a - 2.0 * b + c);
     let offset = (best as f64 - f64::from(steps) + vertex) * STEP_S;
-    if offset.abs() < LEAST_S {
+    if offset.abs() < OFFSET_LEFT_S.get() {
         return 0.0;
     }
     let what = format!(

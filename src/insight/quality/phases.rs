@@ -5,38 +5,26 @@ use crate::base::stats::{mean, median};
 use crate::flight::Log;
 use crate::flight::series::held;
 use crate::flight::spans::{Span, around, joined, length, without};
+use crate::insight::criteria::usable::{
+    CRASH_TAIL_S, END_MARGIN_S, IDLE_EFFORT, IMPACT_FORCE, IMPACT_MARGIN_S, LANDING_S, LOG_END_S, RESTING_S,
+    STILL_FORCE, STILL_RATE, TAKE_OFF_MARGIN_S, TOUCH_DOWN_MARGIN_S,
+};
 use crate::model::constants::GRAVITY_M_S2;
 
-/// Usable spans shorter than this are given up, s.
-pub const SHORTEST_S: f64 = 2.0;
-/// Specific force across the thrust that only an impact makes, m/s2.
-const IMPACT: f64 = 35.0;
-/// Kept away from an impact, s.
-const IMPACT_MARGIN_S: f64 = 0.5;
-/// An impact in the log's last seconds ends the flight.
-const CRASH_TAIL_S: f64 = 3.0;
 /// Length over which standing still is judged, s.
 const BIN_S: f64 = 0.1;
-/// Standing still for less than this in mid-flight is not a landing, s.
-const LANDING_S: f64 = 2.0;
-/// The same at the beginning and at the end of a log, s.
-const RESTING_S: f64 = 0.2;
-/// Kept away from take-off, and from touching down, which comes before standing still, s.
-const GROUND_MARGIN_S: f64 = 0.3;
-const TOUCH_MARGIN_S: f64 = 1.0;
-/// Kept away from the end of a log, which is often cut off while the vehicle touches down, s.
-const END_MARGIN_S: f64 = 0.5;
 
 /// Times around impacts; from the last ones to the end of the log where it ends soon after.
 pub fn impacts(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let imu = &log.imu;
+    let most = IMPACT_FORCE.get();
     let hit = |i: usize| {
         let [.., x, y, z] = imu.rows[i];
-        x.hypot(y) > IMPACT || z < -IMPACT
+        x.hypot(y) > most || z < -most
     };
-    let mut holes = around(&imu.time_s, hit, IMPACT_MARGIN_S);
+    let mut holes = around(&imu.time_s, hit, IMPACT_MARGIN_S.get());
     let end = imu.time_s[imu.len() - 1];
-    let crashed = holes.last_mut().filter(|last| end - last[1] < CRASH_TAIL_S);
+    let crashed = holes.last_mut().filter(|last| end - last[1] < CRASH_TAIL_S.get());
     if let Some(last) = crashed {
         last[1] = end;
         let what = format!("impacts until the log ends at {end:.1} s");
@@ -44,7 +32,7 @@ pub fn impacts(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
         findings.push(LogFinding::new(Severity::Warning, "crash", "imu", what, so).during(*last));
     }
     for hole in holes.iter().filter(|hole| hole[1] < end) {
-        let what = format!("specific force beyond {IMPACT} m/s2 across the thrust");
+        let what = format!("specific force beyond {most} m/s2 across the thrust");
         findings.push(LogFinding::new(Severity::Warning, "impact", "imu", what, "this time is left out").during(*hole));
     }
     holes
@@ -79,13 +67,13 @@ pub fn ground(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
         let norm = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
         let turning = mean(&rows.iter().map(|row| norm(&row[..3])).collect::<Vec<_>>());
         let force = mean(&rows.iter().map(|row| norm(&row[3..])).collect::<Vec<_>>());
-        let still = turning < 0.3 && (force - GRAVITY_M_S2).abs() < 1.0;
+        let still = turning < STILL_RATE.get() && (force - GRAVITY_M_S2).abs() < STILL_FORCE.get();
         bins.push(([from, from + BIN_S], mean(&effort[first..first + n]), still));
         first += n;
     }
     let working: Vec<f64> = bins.iter().map(|bin| bin.1).filter(|x| *x > 0.0).collect();
     let usual = median(&working);
-    let idle = |bin: &&(Span, f64, bool)| bin.2 && (bin.1.is_nan() || bin.1 < 0.6 * usual);
+    let idle = |bin: &&(Span, f64, bool)| bin.2 && (bin.1.is_nan() || bin.1 < IDLE_EFFORT.get() * usual);
     // A knock or two while being placed does not make a flight.
     let bridged = |spans: Vec<Span>| {
         let wide = spans.iter().map(|s| [s[0] - BIN_S, s[1] + BIN_S]).collect();
@@ -93,15 +81,16 @@ pub fn ground(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     };
     let still = bridged(bins.iter().filter(idle).map(|bin| bin.0).collect());
     let (start, end) = (imu.time_s[0], imu.time_s[imu.len() - 1]);
-    let at_an_end = |s: &Span| s[0] <= start + 1.0 || s[1] >= end - 1.0;
-    let landed = |s: &Span| s[1] - s[0] >= if at_an_end(s) { RESTING_S } else { LANDING_S };
+    let near = LOG_END_S.get();
+    let at_an_end = |s: &Span| s[0] <= start + near || s[1] >= end - near;
+    let landed = |s: &Span| s[1] - s[0] >= if at_an_end(s) { RESTING_S.get() } else { LANDING_S.get() };
     let mut holes: Vec<Span> = still.into_iter().filter(landed).collect();
     for hole in &mut holes {
-        *hole = [hole[0] - TOUCH_MARGIN_S, hole[1] + GROUND_MARGIN_S];
-        if hole[0] <= start + 1.0 {
+        *hole = [hole[0] - TOUCH_DOWN_MARGIN_S.get(), hole[1] + TAKE_OFF_MARGIN_S.get()];
+        if hole[0] <= start + near {
             hole[0] = start;
         }
-        if hole[1] >= end - 1.0 {
+        if hole[1] >= end - near {
             hole[1] = end + BIN_S;
         }
     }
@@ -114,6 +103,6 @@ pub fn ground(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
         let what = "the vehicle never flies".into();
         findings.push(LogFinding::new(Severity::Problem, "ground", "imu", what, "nothing can be identified"));
     }
-    holes.push([end - END_MARGIN_S, end + BIN_S]);
+    holes.push([end - END_MARGIN_S.get(), end + BIN_S]);
     joined(holes)
 }

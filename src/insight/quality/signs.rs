@@ -6,19 +6,21 @@ use crate::base::stats::{correlation, mean, median};
 use crate::flight::Log;
 use crate::flight::series::{held, period};
 use crate::flight::spans::{Span, contain};
+use crate::insight::criteria::consistent::{
+    ATTITUDE_CORRELATION, ATTITUDE_TURN_RAD, FRAME_SAMPLES, GRAVITY_SHARE, SIGN_CORRELATION, SWAPPED_CORRELATION,
+    SWAPPED_OWN, UPRIGHT_SHARE, VELOCITY_CORRELATION, VELOCITY_SAMPLES, VELOCITY_SPEED_M_S,
+};
 use crate::model::attitude::body_axes;
 use crate::model::constants::GRAVITY_M_S2;
 
 const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 /// Delays at which rates are compared with their setpoints, s.
 const DELAYS_S: [f64; 4] = [0.0, 0.02, 0.05, 0.1];
-/// A correlation of this size decides about a sign.
-const CLEAR: f64 = 0.5;
 
 /// Adds what contradicts itself within the `usable` spans.
 pub fn judge(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
     let chosen: Vec<usize> = (0..log.imu.len()).filter(|&i| contain(usable, log.imu.time_s[i])).collect();
-    if chosen.len() < 100 {
+    if chosen.len() < FRAME_SAMPLES.count() {
         return;
     }
     setpoints(log, &chosen, findings);
@@ -51,10 +53,10 @@ fn setpoints(log: &Log, chosen: &[usize], findings: &mut Vec<LogFinding>) {
         let other = (0..3).filter(|&k| k != axis).map(|k| (k, agreement(&gyro[k])));
         let (rival, most) = other.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).unwrap_or((axis, 0.0));
         let so = "give the sign or the axis in a mapping";
-        if own < -CLEAR {
+        if own < -SIGN_CORRELATION.get() {
             let what = format!("the {} rate goes against its setpoint (correlation {own:.2})", AXES[axis]);
             problem("sign", "setpoint", what, so, findings);
-        } else if most.abs() > 0.8 && own.abs() < 0.5 * most.abs() {
+        } else if most.abs() > SWAPPED_CORRELATION.get() && own.abs() < SWAPPED_OWN.get() * most.abs() {
             let what = format!("the {} setpoint moves the {} rate (correlation {most:.2})", AXES[axis], AXES[rival]);
             problem("swapped_axes", "setpoint", what, so, findings);
         }
@@ -69,7 +71,7 @@ fn upright(log: &Log, chosen: &[usize], findings: &mut Vec<LogFinding>) {
     if middle[2] < 0.0 && middle[2].abs() > middle[0].abs().max(middle[1].abs()) {
         let what = format!("the specific force along z is {:.1} m/s2 at the median: z points down", middle[2]);
         problem("frame", "imu", what, so, findings);
-    } else if middle[0].abs().max(middle[1].abs()) > 0.5 * middle[2].abs() {
+    } else if middle[0].abs().max(middle[1].abs()) > UPRIGHT_SHARE.get() * middle[2].abs() {
         let [x, y, z] = middle;
         let what = format!("specific force at the median is ({x:.1}, {y:.1}, {z:.1}) m/s2, not along z");
         problem("frame", "imu", what, so, findings);
@@ -88,8 +90,8 @@ fn attitude(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
             .unzip();
         let agreement = correlation(&x, &y);
         // Little turning tells nothing; a held, smoothed or noisy attitude still agrees in sign.
-        let turning = y.iter().map(|y| y.abs()).fold(0.0, f64::max) > 0.05;
-        if x.len() > 100 && turning && agreement < 0.3 {
+        let turning = y.iter().map(|y| y.abs()).fold(0.0, f64::max) > ATTITUDE_TURN_RAD.get();
+        if x.len() > FRAME_SAMPLES.count() && turning && agreement < ATTITUDE_CORRELATION.get() {
             let what = format!("the attitude does not turn in {axis} as the gyro does (correlation {agreement:.2})");
             let so = "check the frames (FLU or FRD, ENU or NED) and the order of the quaternion in a mapping";
             problem("frame", "odometry", what, so, findings);
@@ -109,7 +111,7 @@ fn gravity(log: &Log, chosen: &[usize], findings: &mut Vec<LogFinding>) {
         .filter(|x: &f64| x.is_finite())
         .collect();
     let carried = mean(&lift);
-    if lift.len() > 100 && (carried - GRAVITY_M_S2).abs() > 0.25 * GRAVITY_M_S2 {
+    if lift.len() > FRAME_SAMPLES.count() && (carried / GRAVITY_M_S2 - 1.0).abs() > GRAVITY_SHARE.get() {
         let what = format!(
             "specific force turned upright by the attitude is {carried:.1} m/s2 on average, not {GRAVITY_M_S2}"
         );
@@ -139,8 +141,8 @@ fn velocity(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
             }
         }
         let agreement = correlation(&from_position, &measured);
-        let moving = measured.iter().map(|v| v.abs()).fold(0.0, f64::max) > 0.5;
-        if measured.len() > 50 && moving && agreement < 0.5 {
+        let moving = measured.iter().map(|v| v.abs()).fold(0.0, f64::max) > VELOCITY_SPEED_M_S.get();
+        if measured.len() > VELOCITY_SAMPLES.count() && moving && agreement < VELOCITY_CORRELATION.get() {
             let what =
                 format!("the velocity along {axis} is not the change of the position (correlation {agreement:.2})");
             let so = "check the velocity's frame (body or world) and its signs in a mapping";

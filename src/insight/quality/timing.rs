@@ -4,13 +4,8 @@ use super::{LogFinding, Severity, StreamSummary};
 use crate::flight::series::period;
 use crate::flight::spans::{Span, joined};
 use crate::flight::{Log, Stream};
+use crate::insight::criteria::usable::{BRIDGED_S, GAP_PERIODS, HELD_ROWS};
 
-/// Rows of which more than this share repeat the one before are held samples of a slower source.
-const HELD: f64 = 0.5;
-/// A break of so many usual periods is a gap.
-const GAP_PERIODS: f64 = 5.0;
-/// Breaks shorter than this are bridged, s.
-const BRIDGED_S: f64 = 0.05;
 /// Rows beyond this number of gaps are told as one.
 const GAPS_TOLD: usize = 5;
 
@@ -73,7 +68,7 @@ fn mend<const N: usize>(
         fresh: share,
         span_s: kept.time_s.first().zip(kept.time_s.last()).map(|(&first, &last)| [first, last]),
     };
-    if thin && !kept.is_empty() && share < HELD {
+    if thin && !kept.is_empty() && share < HELD_ROWS.get() {
         let what = format!("only {:.0} % of the rows are fresh, the others repeat the one before", 100.0 * share);
         findings.push(LogFinding::new(Severity::Note, "held_samples", name, what, "only fresh rows are used"));
         kept = Stream {
@@ -90,13 +85,13 @@ pub fn gaps(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let mut holes = of("imu", &log.imu.time_s, findings);
     if let (Some(&first), Some(&last)) = (log.setpoint.time_s.first(), log.setpoint.time_s.last()) {
         holes.extend(of("setpoint", &log.setpoint.time_s, findings));
-        holes.extend([[f64::NEG_INFINITY, first], [last + BRIDGED_S, f64::INFINITY]]);
+        holes.extend([[f64::NEG_INFINITY, first], [last + BRIDGED_S.get(), f64::INFINITY]]);
     }
     joined(holes)
 }
 
 fn of(name: &'static str, times: &[f64], findings: &mut Vec<LogFinding>) -> Vec<Span> {
-    let longest = (GAP_PERIODS * period(times)).max(BRIDGED_S);
+    let longest = (GAP_PERIODS.get() * period(times)).max(BRIDGED_S.get());
     let gaps: Vec<Span> = times.windows(2).filter(|pair| pair[1] - pair[0] > longest).map(|p| [p[0], p[1]]).collect();
     let so = "this time is left out";
     for gap in gaps.iter().take(GAPS_TOLD) {

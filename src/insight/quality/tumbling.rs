@@ -4,34 +4,30 @@ use super::{LogFinding, Severity};
 use crate::flight::Log;
 use crate::flight::series::held;
 use crate::flight::spans::{Span, around, length};
-
-/// Commands of so many seconds explain a rate.
-const MEMORY_S: f64 = 0.4;
-/// A rate so far outside of what those commands asked for, rad/s, or by this share of their range, is not a response.
-const BEYOND: f64 = 5.0;
-const BEYOND_SHARE: f64 = 0.6;
-/// Kept away on either side, s.
-const MARGIN_S: f64 = 0.3;
-/// Where it is more of the log than this, or happens more often, the commands or their clock are wrong, not the flight.
-const MOST: f64 = 0.2;
-const OFTEN: usize = 20;
+use crate::insight::criteria::usable::{
+    COMMAND_MEMORY_S, TUMBLING_MARGIN_S, TUMBLING_SHARE, TUMBLING_TIMES, UNASKED_RATE, UNASKED_SHARE,
+};
 
 /// Times at which a body rate is far outside the range of its recent commands.
 pub fn find(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let times = &log.imu.time_s;
+    let (beyond, share) = (UNASKED_RATE.get(), UNASKED_SHARE.get());
     let mut loose = vec![false; times.len()];
     for axis in 0..3 {
         let asked = held(&log.setpoint.time_s, &log.setpoint.column(axis), times);
         let [low, high] = [-1.0, 1.0].map(|sign| largest(times, &asked.iter().map(|x| sign * x).collect::<Vec<_>>()));
         for i in 0..times.len() {
             let (low, high, rate) = (-low[i], high[i], log.imu.rows[i][axis]);
-            let far = (BEYOND_SHARE * (high - low)).max(BEYOND);
+            let far = (share * (high - low)).max(beyond);
             loose[i] |= rate > high.max(0.0) + far || rate < low.min(0.0) - far;
         }
     }
-    let holes = around(times, |i| loose[i], MARGIN_S);
-    if length(&holes) > MOST * (times[times.len() - 1] - times[0]) || holes.len() > OFTEN {
-        let what = format!("it turns {} times as no command of the {MEMORY_S} s before asked", holes.len());
+    let holes = around(times, |i| loose[i], TUMBLING_MARGIN_S.get());
+    if length(&holes) > TUMBLING_SHARE.get() * (times[times.len() - 1] - times[0])
+        || holes.len() > TUMBLING_TIMES.count()
+    {
+        let what =
+            format!("it turns {} times as no command of the {} s before asked", holes.len(), COMMAND_MEMORY_S.get());
         let did = "nothing is left out; their clocks may run apart, or the mapping may be wrong";
         findings.push(LogFinding::new(Severity::Note, "tumbling", "setpoint", what, did));
         return Vec::new();
@@ -43,12 +39,13 @@ pub fn find(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     holes
 }
 
-/// Largest of `x` over the last [`MEMORY_S`]; NaN counts as nothing, and where there is nothing else no rate is too large.
+/// Largest of `x` over the last [`COMMAND_MEMORY_S`]; NaN counts as nothing, and where there is nothing else no rate is too large.
 fn largest(times: &[f64], x: &[f64]) -> Vec<f64> {
+    let memory_s = COMMAND_MEMORY_S.get();
     let mut queue = std::collections::VecDeque::<usize>::new();
     let mut out = Vec::with_capacity(x.len());
     for i in 0..x.len() {
-        while queue.front().is_some_and(|&old| times[old] < times[i] - MEMORY_S) {
+        while queue.front().is_some_and(|&old| times[old] < times[i] - memory_s) {
             queue.pop_front();
         }
         if x[i].is_finite() {

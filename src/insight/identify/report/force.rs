@@ -9,64 +9,76 @@ use crate::insight::identify::{IdentifyOptions, bias};
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::dynamics::drag::{ellipsoid, semi_axes};
 
+/// A thrust curve that was fitted.
+struct Curve<'a> {
+    force: Force<'a>,
+    all: Solution,
+    /// Its highest power.
+    power: usize,
+    /// Why no vehicle has such a curve.
+    trouble: Option<Invalid>,
+}
+
 /// Fits the thrust curve with as many powers as the flight settles, its time constant, and the drag.
 pub fn report(data: &Data, options: &IdentifyOptions, out: &mut Identification) {
     if let Some(why) = data.why_not("thrust curve") {
-        out.response[3] = Response { tau_s: Estimate::unknown(&why), ..Response::default() };
-        out.thrust_n = std::array::from_fn(|_| Estimate::unknown(&why));
-        out.drag.unknown(&why);
-        out.assume("time_constant_s.thrust", &why);
-        out.assume("thrust_n", &why);
-        return out.assume("drag", &why);
+        return unknown(&why, out);
     }
-    let (no_voltage, no_drag) = (data.why_not("thrust over voltage"), data.why_not("drag"));
-    let gravity = out.vehicle.gravity_m_s2;
-    let bias = bias::fit(data, gravity);
-    let taken_off = bias.as_ref().map_or([0.0; 3], |b| [0.0, 0.0, b.values[2]]);
-    let moving = data.flights.iter().any(|flight| flight.velocity[0].iter().any(|v| v.is_finite()));
-    let given = if no_drag.is_some() && moving {
-        ellipsoid(&out.vehicle.drag).map(|k| k / out.vehicle.mass_kg)
-    } else {
-        [0.0; 3]
+    let no_drag = data.why_not("drag");
+    let bias = bias::fit(data, out.vehicle.gravity_m_s2);
+    let mut tried = curves(data, bias.as_ref(), options, out);
+    let Some(Curve { force, all, power, trouble }) = tried.pop() else {
+        return unknown("too few stretches of flight for a fit", out);
     };
-    let voltage = no_voltage.is_none();
-    // The whole cubic, then less of it where the flown range does not settle its shape.
-    let curves = [[true; 4], [true, true, true, false], [true, true, false, false]];
-    let mut tried = Vec::new();
-    for curve in curves {
-        let terms =
-            Terms { thrust: [curve[0], curve[1], curve[2], curve[3], voltage, voltage], drag: no_drag.is_none() };
-        let force = Force::new(data, terms, taken_off, given, options.force_cutoff_hz);
-        let Some(all) = force.fit(DataPart::All, None) else { continue };
-        let mut vehicle = out.vehicle.clone();
-        vehicle.thrust_n = std::array::from_fn(|k| all.values[THRUST + k] * vehicle.mass_kg);
-        let trouble = vehicle.check_thrust().err();
-        let fine = trouble.is_none();
-        tried.push((force, all, terms, trouble));
-        if fine {
-            break;
-        }
-    }
-    let Some((force, all, terms, trouble)) = tried.pop() else {
-        let why = "too few stretches of flight for a fit";
-        out.response[3].tau_s = Estimate::unknown(why);
-        out.drag.unknown(why);
-        out.assume("time_constant_s.thrust", why);
-        out.assume("thrust_n", why);
-        return out.assume("drag", why);
-    };
-    if let Some((.., Some(first))) = tried.first().map(|(a, b, c, d)| (a, b, c, d)) {
-        let kept = terms.thrust[..4].iter().filter(|&&kept| kept).count() - 1;
-        out.remark(format!("thrust: the whole cubic has {}; fitted with the powers up to {kept}", first.found));
+    if let Some(first) = tried.first().and_then(|first| first.trouble.as_ref()) {
+        out.remark(format!("thrust: the whole cubic has {}; fitted with the powers up to {power}", first.found));
     }
     keep_thrust(&force, &all, bias.as_ref(), trouble, out);
     keep_drag(&all, no_drag, out);
-    if let Some(why) = no_voltage {
+    if let Some(why) = data.why_not("thrust over voltage") {
         out.thrust_n[4] = Estimate::unknown(&why);
         out.thrust_n[5] = Estimate::unknown(&why);
         out.remark(format!("thrust over voltage: {why}; c4 = c5 = 0"));
     }
     validate_force(&force, &all, bias.as_ref(), out);
+}
+
+/// Neither thrust nor drag is told.
+fn unknown(why: &str, out: &mut Identification) {
+    out.response[3].tau_s = Estimate::unknown(why);
+    out.thrust_n = std::array::from_fn(|_| Estimate::unknown(why));
+    out.drag.unknown(why);
+    ["time_constant_s.thrust", "thrust_n", "drag"].into_iter().for_each(|key| out.assume(key, why));
+}
+
+/// The whole cubic, then less of it where the flown range does not settle its shape; the last is the one to take.
+fn curves<'a>(
+    data: &'a Data,
+    bias: Option<&Solution>,
+    options: &IdentifyOptions,
+    out: &Identification,
+) -> Vec<Curve<'a>> {
+    let drag = data.why_not("drag").is_none();
+    let voltage = data.why_not("thrust over voltage").is_none();
+    let moving = data.flights.iter().any(|flight| flight.velocity[0].iter().any(|v| v.is_finite()));
+    let base = ellipsoid(&out.vehicle.drag).map(|k| k / out.vehicle.mass_kg);
+    let given = if !drag && moving { base } else { [0.0; 3] };
+    let bias = bias.map_or([0.0; 3], |b| [0.0, 0.0, b.values[2]]);
+    let mut tried = Vec::new();
+    for power in [3, 2, 1] {
+        let terms = Terms { thrust: std::array::from_fn(|k| if k < 4 { k <= power } else { voltage }), drag };
+        let force = Force::new(data, terms, bias, given, options.force_cutoff_hz);
+        let Some(all) = force.fit(DataPart::All, None) else { continue };
+        let mut vehicle = out.vehicle.clone();
+        vehicle.thrust_n = std::array::from_fn(|k| all.values[THRUST + k] * vehicle.mass_kg);
+        let trouble = vehicle.check_thrust().err();
+        let fine = trouble.is_none();
+        tried.push(Curve { force, all, power, trouble });
+        if fine {
+            break;
+        }
+    }
+    tried
 }
 
 fn keep_thrust(

@@ -1,5 +1,6 @@
 //! The response of one rate axis, into the result.
 
+use crate::insight::criteria::shown::{REMARKED_DELAY_S, REMARKED_ERROR, REMARKED_R2};
 use crate::insight::identify::estimate::Estimate;
 use crate::insight::identify::rates::{Compared, RateAxis};
 use crate::insight::identify::result::{ComparedChannel, Identification, Response};
@@ -7,12 +8,6 @@ use crate::insight::identify::solve::Solution;
 use crate::insight::identify::{AXES, IdentifyOptions};
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::vehicle::{MaxRates, TimeConstants};
-
-/// A pure delay is remarked on where it is at least this long, s, and lowers the validation error at least to this share.
-const TELLING_DELAY_S: f64 = 0.003;
-const TELLING_GAIN: f64 = 0.95;
-/// Above this R2 nobody asks for a delay.
-const EXPLAINED: f64 = 0.9995;
 
 /// One axis, fitted on the training part, on all of it, and with a delay where one may be missing.
 pub struct Fitted<'a> {
@@ -33,7 +28,7 @@ pub fn fit<'a>(data: &'a Data, axis: usize, options: &IdentifyOptions) -> Result
         return Err("too few stretches of flight for a fit".into());
     };
     let validation = rate.compare(DataPart::Validation, &train);
-    let late = if validation.score().r2 < EXPLAINED { rate.fit(DataPart::Train, true) } else { None };
+    let late = if validation.score().r2 < REMARKED_R2.get() { rate.fit(DataPart::Train, true) } else { None };
     Ok(Fitted { rate, train, all, validation, late })
 }
 
@@ -78,7 +73,7 @@ pub fn keep(fitted: Result<Fitted, String>, axis: usize, out: &mut Identificatio
     }
     if let Some(late) = late {
         let better = rate.compare(DataPart::Validation, &late).score();
-        if late.values[3] > TELLING_DELAY_S && better.rmse < TELLING_GAIN * score.rmse {
+        if late.values[3] > REMARKED_DELAY_S.get() && better.rmse < REMARKED_ERROR.get() * score.rmse {
             out.remark(format!(
                 "{name}: a pure delay of {:.0} ms before a lag of {:.0} ms would bring R2 from {:.3} to {:.3}; the model has none",
                 1e3 * late.values[3],

@@ -1,0 +1,46 @@
+//! Is it chance: lost commands, gusts?
+
+use super::criteria;
+
+/// What these are calibrated with.
+const DROPOUT: &str =
+    "cargo bench --bench hidden_effects -- --only command_dropout --n 50, and the same with rate_delay and none";
+const GUSTS: &str = "cargo bench --bench hidden_effects -- --only gusts --n 50, and the same with --tier outside";
+
+criteria! {
+    "Is it chance?";
+
+    /// A stick movement is looked at where its loss would show beyond so many standard deviations of the noise.
+    MOVEMENT_DEVIATIONS = 12.0, Theory("half of a loss is told from a whole one by six standard deviations");
+    /// The movement before may be so much of it.
+    MOVEMENT_BEFORE = 0.25, Assumed("what the loss of the command before would leave reaches into this one");
+    /// Share of a movement's error from which half of it is there.
+    LOST_HALF = 0.3, Theory("halfway between what a kept and a half lost command leave, with some room for the lag");
+    /// Share from which all of it is there.
+    LOST_WHOLE = 0.7, Theory("halfway between what a half and a whole lost command leave, with some room for the lag");
+    /// Share above which it is more than a loss.
+    LOST_MOST = 1.4, Theory("as far above a whole one as the least");
+    /// Standard deviations from which an answer that comes early is looked at.
+    EARLY_DEVIATIONS = 4.0, Theory("one in 16 000 by chance");
+    /// Share of a movement that it has to be.
+    EARLY_SHARE = 0.4, Calibrated(DROPOUT);
+    /// Lost commands that have to be seen.
+    LOST_COMMANDS = 12.0, Calibrated(DROPOUT);
+    /// So many times as many whole losses as half ones, for a loss is all or nothing.
+    LOST_OVER_HALF = 2.0, Calibrated(DROPOUT);
+    /// So many times as many whole losses as early answers, for a link whose delay varies has both.
+    LOST_OVER_EARLY = 2.0, Calibrated(DROPOUT);
+    /// Share of lost commands that matters, in small typical sizes.
+    LOST_MATTERS = 0.5, Assumed("as of any other effect");
+
+    /// Stretches of flight that have to agree on the memory of gusts.
+    GUST_STRETCHES = 15.0, Calibrated(GUSTS);
+    /// The weakest quarter of the flight has this share of the strongest, for the air is as restless early as late.
+    GUST_LASTING = 0.1, Calibrated(GUSTS);
+    /// The weaker horizontal axis has this share of the stronger.
+    GUST_BALANCED = 0.15, Calibrated(GUSTS);
+    /// Memory of gusts, s.
+    GUST_MEMORY_S = 0.05, Theory("the turbulence scale over the airspeed of a racing quadrotor: a metre over 20 m/s");
+    /// Structure beside the gusts that is more than they leave.
+    GUST_STRUCTURE = 0.7, Calibrated(GUSTS);
+}

@@ -1,0 +1,33 @@
+//! Have the compact model's own numbers moved, and why? What must be true of a move to be told.
+
+use super::criteria;
+
+/// What these are calibrated with.
+const DRIFT: &str = "cargo bench --bench hidden_effects -- --only drift --n 50, and the same with mass_or_density, throttle_offset and thrust_fade";
+
+criteria! {
+    "Has the base moved?";
+
+    /// Standard deviations that a move has to be.
+    MOVED_DEVIATIONS = 4.0, Theory("one in 16 000 by chance");
+    /// Move of a time constant that matters, as a share.
+    MOVED_TIME_CONSTANT = 0.05, Assumed("randomisation covers less");
+    /// Of a full-stick rate.
+    MOVED_RATE = 0.015, Assumed("randomisation covers less");
+    /// Of the thrust over mass.
+    MOVED_THRUST = 0.02, Assumed("randomisation covers less");
+    /// Of the drag.
+    MOVED_DRAG = 0.1, Assumed("randomisation covers less");
+    /// Of the discharge.
+    MOVED_DISCHARGE = 0.2, Assumed("randomisation covers less");
+    /// Of the voltage's part in the thrust.
+    MOVED_VOLTAGE = 0.1, Assumed("randomisation covers less");
+    /// Share of the whole move that an effect has to account for to be named as its cause.
+    CAUSE_ACCOUNTS = 0.9, Calibrated(DRIFT);
+    /// Size of such a cause that matters, in small typical sizes.
+    CAUSE_MATTERS = 0.5, Assumed("as of any other effect");
+    /// So many times what the best leaves of the move is left by causes that are a tie with it.
+    CAUSE_TIE = 2.0, Calibrated(DRIFT);
+    /// And so much of the move besides.
+    CAUSE_TIE_SHARE = 0.003, Calibrated(DRIFT);
+}

@@ -1,0 +1,20 @@
+//! Does its size matter?
+
+use super::criteria;
+
+criteria! {
+    "Does it matter?";
+
+    /// Size of an effect, in its small typical sizes, that anybody would notice.
+    MATERIAL_SIZE = 0.5, Assumed("the small typical size of an effect's card is one that a lap shows");
+    /// Bias of a sensor, in its small typical sizes, that is more than any such sensor has.
+    MATERIAL_BIAS = 0.8, Assumed("the fit of every flight allows for smaller ones");
+    /// Gusts that are worth a word, m/s2.
+    MATERIAL_GUST = 0.08, Assumed("a push of 0.1 m/s over the second that a policy plans ahead");
+    /// Structure in rates that nobody needs to care about, rad/s.
+    IDLE_RATE = 0.025, Assumed("below the noise that policies are trained with");
+    /// The same in specific force, m/s2.
+    IDLE_FORCE = 0.08, Assumed("a push of 0.1 m/s over the second that a policy plans ahead");
+    /// The same in the voltage, V.
+    IDLE_VOLTAGE = 0.02, Assumed("a change of thrust of 0.3 %");
+}

@@ -1,0 +1,20 @@
+//! Could it be another cause?
+
+use super::criteria;
+
+criteria! {
+    "Is there a rival?";
+
+    /// Standard deviations of their difference within which two causes are a tie.
+    TIE_DEVIATIONS = 2.5, Theory("one in eighty by chance");
+    /// Share of its gain that a rival keeps at most, once the best is in, to compete with it.
+    RIVAL_KEEPS = 0.3, Calibrated("cargo bench --bench hidden_effects -- --n 300");
+    /// Difference of the delays after commands and after the odometry that is none, s.
+    SAME_DELAY_S = 6e-4, Assumed("a third of a sample of the IMU");
+    /// The same as a share of the delay.
+    SAME_DELAY_SHARE = 0.05, Assumed("both are known to a few percent");
+    /// Difference of a lag of the velocity from the shift of its clock, as a share of that, up to which it comes from it.
+    SAME_LAG_SHARE = 0.5, Assumed("the lag is known worse than the shift");
+    /// A delay of less than so many times the mean delay of the lost commands is theirs.
+    LOST_DELAY = 3.0, Assumed("bursts of lost commands have a mean delay beyond a single one's");
+}
