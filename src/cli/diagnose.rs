@@ -2,6 +2,7 @@
 
 mod output;
 mod text;
+mod thresholds;
 mod worth;
 
 use super::{CommandEnd, logs, progress};
@@ -16,13 +17,14 @@ use crate::present::run;
 use indicatif::ProgressBar;
 use output::OutputFiles;
 use std::path::PathBuf;
+use thresholds::Thresholds;
 
 /// Show what the simulation gets wrong, name the cause, and extend the model
 #[derive(Debug, clap::Args)]
 #[command(after_help = HELP)]
 pub struct Args {
     /// Logs of one vehicle in the order of flight: MCAP, Betaflight blackbox, PX4 ULog or CSV
-    #[arg(required = true, value_name = "LOG")]
+    #[arg(required_unless_present = "criteria", value_name = "LOG")]
     logs: Vec<PathBuf>,
     /// The vehicle that the simulation takes it for: a name or a file [default: identified from the logs]
     #[arg(long, value_name = "NAME|FILE")]
@@ -61,6 +63,8 @@ pub struct Args {
     /// Without --vehicle: the vehicle that lends what the logs cannot tell
     #[arg(long, value_name = "NAME|FILE", default_value = "seed_class")]
     base: String,
+    #[command(flatten)]
+    thresholds: Thresholds,
 }
 
 const HELP: &str = "The flight is predicted from its commands by the simulator's own equations. What the residuals \
@@ -77,6 +81,11 @@ Examples:
 
 /// Reads, checks, diagnoses, prints, writes.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
+    args.thresholds.scale()?;
+    if args.thresholds.criteria {
+        super::print(&thresholds::list()?)?;
+        return Ok(CommandEnd::Done);
+    }
     let output = OutputFiles::new(args)?;
     let given = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
     check_racing(args)?;

@@ -1,11 +1,6 @@
 //! Is it chance: lost commands, gusts?
 
-use super::criteria;
-
-/// What these are calibrated with.
-const DROPOUT: &str =
-    "cargo bench --bench hidden_effects -- --only command_dropout --n 50, and the same with rate_delay and none";
-const GUSTS: &str = "cargo bench --bench hidden_effects -- --only gusts --n 50, and the same with --tier outside";
+use super::{UNRECORDED, criteria};
 
 criteria! {
     "Is it chance?";
@@ -23,24 +18,24 @@ criteria! {
     /// Standard deviations from which an answer that comes early is looked at.
     EARLY_DEVIATIONS = 4.0, Theory("one in 16 000 by chance");
     /// Share of a movement that it has to be.
-    EARLY_SHARE = 0.4, Calibrated(DROPOUT);
+    EARLY_SHARE = 0.4, Assumed(UNRECORDED);
     /// Lost commands that have to be seen.
-    LOST_COMMANDS = 12.0, Calibrated(DROPOUT);
+    LOST_COMMANDS = 12.0, Assumed(UNRECORDED);
     /// So many times as many whole losses as half ones, for a loss is all or nothing.
-    LOST_OVER_HALF = 2.0, Calibrated(DROPOUT);
+    LOST_OVER_HALF = 2.0, Assumed(UNRECORDED);
     /// So many times as many whole losses as early answers, for a link whose delay varies has both.
-    LOST_OVER_EARLY = 2.0, Calibrated(DROPOUT);
+    LOST_OVER_EARLY = 2.0, Assumed(UNRECORDED);
     /// Share of lost commands that matters, in small typical sizes.
     LOST_MATTERS = 0.5, Assumed("as of any other effect");
 
     /// Stretches of flight that have to agree on the memory of gusts.
-    GUST_STRETCHES = 15.0, Calibrated(GUSTS);
+    GUST_STRETCHES = 15.0, Assumed(UNRECORDED);
     /// The weakest quarter of the flight has this share of the strongest, for the air is as restless early as late.
-    GUST_LASTING = 0.1, Calibrated(GUSTS);
+    GUST_LASTING = 0.1, Assumed(UNRECORDED);
     /// The weaker horizontal axis has this share of the stronger.
-    GUST_BALANCED = 0.15, Calibrated(GUSTS);
+    GUST_BALANCED = 0.15, Assumed(UNRECORDED);
     /// Memory of gusts, s.
-    GUST_MEMORY_S = 0.05, Theory("the turbulence scale over the airspeed of a racing quadrotor: a metre over 20 m/s");
+    GUST_MEMORY_S = 0.05, Theory("an eddy of a metre at 20 m/s passes in it");
     /// Structure beside the gusts that is more than they leave.
-    GUST_STRUCTURE = 0.7, Calibrated(GUSTS);
+    GUST_STRUCTURE = 0.7, Assumed(UNRECORDED);
 }

@@ -17,7 +17,7 @@ criteria! {
     /// Samples without which nothing is said about signs and frames.
     FRAME_SAMPLES = 100.0, Assumed("correlations of fewer are chance");
     /// Correlation against its setpoint that is a wrong sign.
-    SIGN_CORRELATION = 0.5, Assumed("rates that follow correlate above 0.8 with their setpoints");
+    SIGN_CORRELATION = 0.5, Assumed("rates that follow correlate well above it");
     /// Correlation with another axis that is a swapped axis.
     SWAPPED_CORRELATION = 0.8, Assumed("sticks are moved together, but not that much");
     /// Share of that correlation below which its own axis has none.
@@ -35,7 +35,7 @@ criteria! {
     /// Compared samples below which the same holds.
     VELOCITY_SAMPLES = 50.0, Assumed("correlations of fewer are chance");
     /// Correlation of velocity with the change of position below which a frame is wrong.
-    VELOCITY_CORRELATION = 0.5, Assumed("a smoothed or late velocity still has 0.8");
+    VELOCITY_CORRELATION = 0.5, Assumed("a smoothed or late velocity still has more");
 
     /// Share of the commands with a time stamp of the IMU that makes it one clock.
     ONE_CLOCK_SHARE = 0.9, Assumed("clocks that run apart share stamps by chance only");
@@ -44,7 +44,7 @@ criteria! {
     /// Rows of thrust command beside rotor speed without which nothing is said.
     ROTOR_COMMAND_ROWS = 100.0, Assumed("a second of the slowest logs");
     /// Correlation at which the offset of two clocks is believed in a window.
-    CLOCK_CORRELATION = 0.5, Assumed("rates that follow correlate above 0.8 with their prediction");
+    CLOCK_CORRELATION = 0.5, Assumed("rates that follow correlate well above it");
     /// Skew beyond which nothing is looked for, as a share.
     CLOCK_SKEW_MOST = 0.025, Assumed("uncompensated resonators are good to half a percent");
     /// Bins without which clocks are not followed.

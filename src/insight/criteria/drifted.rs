@@ -1,9 +1,6 @@
 //! Have the compact model's own numbers moved, and why? What must be true of a move to be told.
 
-use super::criteria;
-
-/// What these are calibrated with.
-const DRIFT: &str = "cargo bench --bench hidden_effects -- --only drift --n 50, and the same with mass_or_density, throttle_offset and thrust_fade";
+use super::{UNRECORDED, criteria};
 
 criteria! {
     "Has the base moved?";
@@ -23,11 +20,11 @@ criteria! {
     /// Of the voltage's part in the thrust.
     MOVED_VOLTAGE = 0.1, Assumed("randomisation covers less");
     /// Share of the whole move that an effect has to account for to be named as its cause.
-    CAUSE_ACCOUNTS = 0.9, Calibrated(DRIFT);
+    CAUSE_ACCOUNTS = 0.9, Assumed(UNRECORDED);
     /// Size of such a cause that matters, in small typical sizes.
     CAUSE_MATTERS = 0.5, Assumed("as of any other effect");
     /// So many times what the best leaves of the move is left by causes that are a tie with it.
-    CAUSE_TIE = 2.0, Calibrated(DRIFT);
+    CAUSE_TIE = 2.0, Assumed(UNRECORDED);
     /// And so much of the move besides.
-    CAUSE_TIE_SHARE = 0.003, Calibrated(DRIFT);
+    CAUSE_TIE_SHARE = 0.003, Assumed(UNRECORDED);
 }

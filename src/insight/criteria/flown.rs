@@ -1,6 +1,6 @@
 //! Was enough flown to tell?
 
-use super::criteria;
+use super::{UNRECORDED, criteria};
 
 criteria! {
     "Was enough flown?";
@@ -19,9 +19,9 @@ criteria! {
     DISCHARGE_S = 20.0, Assumed("the relaxation of a cell takes as long");
 
     /// Standard deviations that a size has to be, to be seen at all.
-    SEEN_DEVIATIONS = 5.0, Theory("the least gain of 30 is the square of 5.5 standard deviations; with those, a size of five is seen in about a third of the flights");
+    SEEN_DEVIATIONS = 5.0, Assumed("about the root of the least gain of 30 for which an effect is added");
     /// Share of its information that an effect keeps beside the base; below, the base absorbs it.
-    ABSORBED_SHARE = 2e-3, Calibrated("cargo bench --bench hidden_effects -- --n 300");
+    ABSORBED_SHARE = 2e-3, Assumed(UNRECORDED);
     /// Likeness (correlation of what is left) from which a rival is the nearest one.
     NEAREST_LIKENESS = 0.5, Theory("there a quarter of the information is shared");
 

@@ -1,24 +1,24 @@
 //! Does it show again and again, or once?
 
-use super::criteria;
+use super::{UNRECORDED, criteria};
 
 criteria! {
     "Is it replicated?";
 
     /// Stretches of flight that have to agree before an effect is named.
-    AGREEING_STRETCHES = 15.0, Calibrated("cargo bench --bench hidden_effects -- --n 300");
+    AGREEING_STRETCHES = 15.0, Assumed(UNRECORDED);
     /// Standard deviations by which a stretch has to show an effect to count by itself, and against it to count as one less.
     STRETCH_DEVIATIONS = 2.0, Theory("one in forty by chance");
     /// Stretches that have to show a rarely flown effect by themselves.
-    RARE_STRETCHES = 4.0, Theory("with two standard deviations each, by chance one in three million");
+    RARE_STRETCHES = 4.0, Theory("all four by chance: one in three million");
     /// Share of all that the flight tells of a rarely flown effect that they have to hold.
     RARE_SHARE = 0.7, Assumed("what is rarely flown is told where it is flown");
     /// Standard deviations that the size of a rarely flown effect has to be.
     RARE_DEVIATIONS = 6.0, Assumed("half as many again as of one that shows all the time");
     /// Agreeing stretches on the first half period of an oscillation.
-    OSCILLATION_AWAY = 10.0, Calibrated("racer diagnose on the measured flights of RESULTS.md, and gusts of cargo bench --bench hidden_effects");
+    OSCILLATION_AWAY = 10.0, Assumed(UNRECORDED);
     /// Agreeing stretches on the second.
-    OSCILLATION_BACK = 6.0, Calibrated("racer diagnose on the measured flights of RESULTS.md, and gusts of cargo bench --bench hidden_effects");
+    OSCILLATION_BACK = 6.0, Assumed(UNRECORDED);
     /// Share of the first that the second has to have.
     OSCILLATION_LASTS = 0.25, Theory("a damping ratio of 0.4 or less");
 }

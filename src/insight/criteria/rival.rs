@@ -1,6 +1,6 @@
 //! Could it be another cause?
 
-use super::criteria;
+use super::{UNRECORDED, criteria};
 
 criteria! {
     "Is there a rival?";
@@ -8,9 +8,9 @@ criteria! {
     /// Standard deviations of their difference within which two causes are a tie.
     TIE_DEVIATIONS = 2.5, Theory("one in eighty by chance");
     /// Share of its gain that a rival keeps at most, once the best is in, to compete with it.
-    RIVAL_KEEPS = 0.3, Calibrated("cargo bench --bench hidden_effects -- --n 300");
+    RIVAL_KEEPS = 0.3, Assumed(UNRECORDED);
     /// Difference of the delays after commands and after the odometry that is none, s.
-    SAME_DELAY_S = 6e-4, Assumed("a third of a sample of the IMU");
+    SAME_DELAY_S = 6e-4, Assumed("a third of the IMU's period at 500 Hz");
     /// The same as a share of the delay.
     SAME_DELAY_SHARE = 0.05, Assumed("both are known to a few percent");
     /// Difference of a lag of the velocity from the shift of its clock, as a share of that, up to which it comes from it.

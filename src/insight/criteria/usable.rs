@@ -24,7 +24,7 @@ criteria! {
     /// Usable stretch that is kept, s.
     SHORTEST_FLIGHT_S = 2.0, Assumed("longer than what a vehicle remembers, by an order");
     /// Specific force across the thrust that only an impact makes, m/s2.
-    IMPACT_FORCE = 35.0, Assumed("drag across the thrust stays below 2 g on the measured flights of RESULTS.md");
+    IMPACT_FORCE = 35.0, Assumed("drag across the thrust is less at the speeds of racing");
     /// Kept away from an impact, s.
     IMPACT_MARGIN_S = 0.5, Assumed("frames ring for a few tenths of a second");
     /// Time after its last impact within which a log that ends is a crash, s.
@@ -49,7 +49,7 @@ criteria! {
     END_MARGIN_S = 0.5, Assumed("logs are often cut off while the vehicle touches down");
 
     /// Commands of so many seconds explain a rate.
-    COMMAND_MEMORY_S = 0.4, Assumed("several times the slowest rate response of the measured flights, 0.1 s");
+    COMMAND_MEMORY_S = 0.4, Assumed("several times the slowest rate response, 0.1 s");
     /// Rate beyond what those commands asked for that is no response, rad/s.
     UNASKED_RATE = 5.0, Assumed("overshoot of a badly tuned loop is less");
     /// The same as a share of the range of those commands.
@@ -64,7 +64,7 @@ criteria! {
     /// Velocity beyond the median of its neighbours that no vehicle reaches, m/s, besides what acceleration explains.
     VELOCITY_JUMP_M_S = 1.0, Assumed("noise of velocity estimates is a tenth of that");
     /// Acceleration that a vehicle may have, m/s2.
-    VELOCITY_ACCELERATION = 100.0, Assumed("twice the thrust over weight of the strongest racing quadrotors");
+    VELOCITY_ACCELERATION = 100.0, Assumed("ten g: more than racing quadrotors have");
     /// Odometry slower than this is not integrated against, Hz.
     ODOMETRY_RATE_HZ = 40.0, Assumed("attitude is interpolated between its samples; a flip takes 0.3 s");
 }
