@@ -9,6 +9,8 @@ mod answer;
 mod args;
 #[path = "hidden_effects/case.rs"]
 mod case;
+#[path = "hidden_effects/criteria.rs"]
+mod criteria;
 #[path = "hidden_effects/judge.rs"]
 mod judge;
 #[path = "hidden_effects/real.rs"]
@@ -32,6 +34,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 fn main() {
     let args = Args::parse();
     println!("{}", args.summary());
+    if let Some(wanted) = &args.criteria {
+        return criteria::measure(&args, wanted);
+    }
     let mut judged = Vec::new();
     if args.tier != Tier::Real {
         judged = drawn(&args);

@@ -59,6 +59,15 @@ pub struct Args {
     /// Keep logs, answers and truths in this folder
     #[arg(long, value_name = "DIR")]
     pub keep: Option<PathBuf>,
+    /// Instead of a score: halve and double these criteria, or all, and say what changes
+    #[arg(long, value_name = "NAME", num_args = 0..)]
+    pub criteria: Option<Vec<String>>,
+    /// With `--criteria`: logs that an earlier run kept; without, `--n` are drawn
+    #[arg(long, value_name = "DIR", requires = "criteria")]
+    pub logs: Option<PathBuf>,
+    /// With `--criteria`: the table as CSV
+    #[arg(long, value_name = "FILE", requires = "criteria")]
+    pub csv: Option<PathBuf>,
     /// The program [default: the one built with this]
     #[arg(long, value_name = "PATH", default_value = env!("CARGO_BIN_EXE_racer"))]
     pub racer: PathBuf,

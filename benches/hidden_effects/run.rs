@@ -11,8 +11,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-const LOG: &str = "log.mcap";
-const BASE: &str = "base.toml";
+/// Names of a log and of the vehicle that it is taken for.
+pub const LOG: &str = "log.mcap";
+pub const VEHICLE: &str = "base.toml";
 const OUT: &str = "out.json";
 
 /// A folder for one log, which goes again unless it is kept.
@@ -58,10 +59,10 @@ pub fn case(case: &Case, args: &Args) -> Judged {
 pub fn diagnose(args: &Args, folder: &Path, log: &Log, base: &Vehicle) -> (Result<Answer, String>, f64) {
     let base = Vehicle { name: "base".into(), ..base.clone() };
     write(folder, log);
-    std::fs::write(folder.join(BASE), toml::to_string(&base).expect("a vehicle is TOML")).expect("the vehicle");
+    std::fs::write(folder.join(VEHICLE), toml::to_string(&base).expect("a vehicle is TOML")).expect("the vehicle");
     let _ = std::fs::remove_file(folder.join(OUT));
     let start = Instant::now();
-    let ran = run(args, folder, &["diagnose", LOG, "--vehicle", BASE, "--json", OUT]);
+    let ran = run(args, folder, &["diagnose", LOG, "--vehicle", VEHICLE, "--json", OUT]);
     let seconds = start.elapsed().as_secs_f64();
     let answer = match (std::fs::read_to_string(folder.join(OUT)), ran) {
         (Ok(text), _) => Answer::read(&text),
