@@ -3,8 +3,8 @@
 use super::model::Model;
 use super::predict::Predicted;
 use super::record::FlightRecord;
-use crate::model::attitude::{body_axes, compose, dot, normalized, small_rotation};
-use crate::model::dynamics::extended::{self, ForceInputs};
+use crate::model::attitude::{compose, in_world};
+use crate::model::dynamics::extended::{self, Drive, Extended, RigidBody};
 use serde::Serialize;
 
 /// Moments at which the simulation is compared with the flight, s.
@@ -26,9 +26,7 @@ pub struct Horizon {
 #[derive(Clone, Copy, Debug)]
 struct Reached {
     sample: usize,
-    velocity: [f64; 3],
-    position: [f64; 3],
-    attitude: [f64; 4],
+    body: RigidBody<f64>,
 }
 
 /// Errors of the model at `x`, whose prediction is `state`, over the flight between samples of which `wanted` holds.
@@ -40,21 +38,19 @@ pub fn errors(
     wanted: &dyn Fn(usize) -> bool,
 ) -> Vec<Horizon> {
     let runs = runs(model, record, state, x, wanted);
-    let world = |i: usize, v: [f64; 3]| -> [f64; 3] {
-        std::array::from_fn(|k| (0..3).map(|j| record.axes[i][j][k] * v[j]).sum())
-    };
     let mut sums = [[0.0; 3]; AT_S.len()];
     let mut counts = [0usize; AT_S.len()];
     for run in &runs {
         for (at, end) in run.iter().enumerate() {
             let i = end.sample;
-            let velocity = world(i, std::array::from_fn(|k| record.velocity[k][i]));
+            let velocity = in_world(&record.axes[i], std::array::from_fn(|k| record.velocity[k][i]));
             let [w, a, b, c] = record.attitude[i];
-            let turn = compose([w, -a, -b, -c], end.attitude);
+            let turn = compose([w, -a, -b, -c], end.body.attitude);
             let angle = 2.0 * turn[1].hypot(turn[2]).hypot(turn[3]).min(1.0).asin();
             let apart = |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>();
             let position: [f64; 3] = std::array::from_fn(|k| record.position[k][i]);
-            let square = [apart(velocity, end.velocity), apart(position, end.position), angle.to_degrees().powi(2)];
+            let square =
+                [apart(velocity, end.body.velocity), apart(position, end.body.position), angle.to_degrees().powi(2)];
             if square.iter().all(|x| x.is_finite()) {
                 (0..3).for_each(|k| sums[at][k] += square[k]);
                 counts[at] += 1;
@@ -77,7 +73,7 @@ pub fn apart(model: &Model, record: &FlightRecord, a: (&Predicted, &[f64]), b: (
     let squares: Vec<f64> = a
         .iter()
         .zip(&b)
-        .map(|(a, b)| (0..3).map(|k| (a[last].velocity[k] - b[last].velocity[k]).powi(2)).sum::<f64>())
+        .map(|(a, b)| (0..3).map(|k| (a[last].body.velocity[k] - b[last].body.velocity[k]).powi(2)).sum::<f64>())
         .filter(|s| s.is_finite())
         .collect();
     crate::base::stats::mean(&squares).sqrt()
@@ -90,63 +86,48 @@ fn runs(
     x: &[f64],
     wanted: &dyn Fn(usize) -> bool,
 ) -> Vec<[Reached; 3]> {
-    let p = model.parameters(x);
-    let n = record.time.len();
-    let since = record.since();
     let mut out = Vec::new();
     if !record.moves || !record.commanded[1] {
         return out;
     }
+    let p = model.parameters(x);
+    let n = record.time.len();
     let mut next_start = record.time.first().copied().unwrap_or(0.0);
-    let gravity = model.vehicle().gravity_m_s2;
     for start in 0..n {
         if record.time[start] < next_start {
             continue;
         }
         next_start = record.time[start] + EVERY_S;
         let end = record.time.partition_point(|&t| t <= record.time[start] + AT_S[2]);
-        let begins: [f64; 3] = std::array::from_fn(|k| record.velocity[k][start]);
-        let known = begins.iter().chain(&record.attitude[start]).all(|x| x.is_finite());
-        if end >= n || !known || !(start..=end).all(|i| record.usable[i] && wanted(i)) {
-            continue;
-        }
-        let mut attitude = record.attitude[start];
-        let axes = body_axes(attitude);
-        let mut velocity: [f64; 3] = std::array::from_fn(|k| (0..3).map(|j| axes[j][k] * begins[j]).sum());
-        let mut position: [f64; 3] = std::array::from_fn(|k| record.position[k][start]);
-        let mut reached = Vec::new();
-        for i in start..end {
-            let h = record.time[i + 1] - record.time[i];
-            let rates: [f64; 3] = std::array::from_fn(|k| 0.5 * (state.rates[i][k] + state.rates[i + 1][k]));
-            let half = small_rotation(rates, 0.5 * h);
-            let middle = compose(attitude, half);
-            let axes = body_axes(middle);
-            let body = std::array::from_fn(|k| dot(axes[k], velocity));
-            let inputs = ForceInputs {
-                command: state.thrust(i),
-                voltage: state.voltage[i],
-                axes,
-                velocity: body,
-                rates,
-                height: record.height[start] + position[2] - record.position[2][start],
-                rate_error: state.lag(i),
-                elapsed: record.time[i] - since,
-            };
-            let force = extended::force(&p, &inputs);
-            let before = velocity;
-            for k in 0..3 {
-                let pushed: f64 = (0..3).map(|j| axes[j][k] * force[j]).sum();
-                velocity[k] += h * (pushed - if k == 2 { gravity } else { 0.0 });
-                position[k] += 0.5 * h * (before[k] + velocity[k]);
-            }
-            attitude = normalized(compose(middle, half));
-            if reached.len() < AT_S.len() && record.time[i + 1] >= record.time[start] + AT_S[reached.len()] - 1e-6 {
-                reached.push(Reached { sample: i + 1, velocity, position, attitude });
-            }
-        }
-        if let Ok(all) = <[Reached; 3]>::try_from(reached) {
-            out.push(all);
+        let known = (0..3).all(|k| record.velocity[k][start].is_finite())
+            && record.attitude[start].iter().all(|x| x.is_finite());
+        if end < n && known && (start..=end).all(|i| record.usable[i] && wanted(i)) {
+            out.extend(<[Reached; 3]>::try_from(run(&p, record, state, [start, end])));
         }
     }
     out
+}
+
+/// From sample `start` to sample `end` under what was predicted of commands, body rates and voltage.
+fn run(p: &Extended<f64>, record: &FlightRecord, state: &Predicted, [start, end]: [usize; 2]) -> Vec<Reached> {
+    let at = |x: &[Vec<f64>; 3]| x.each_ref().map(|x| x[start]);
+    let velocity = in_world(&record.axes[start], at(&record.velocity));
+    let mut body = RigidBody { position: at(&record.position), velocity, attitude: record.attitude[start] };
+    let since = record.since();
+    let mut reached = Vec::new();
+    for i in start..end {
+        let drive = Drive {
+            command: state.thrust(i),
+            voltage: state.voltage[i],
+            rates: std::array::from_fn(|k| 0.5 * (state.rates[i][k] + state.rates[i + 1][k])),
+            height: record.height[start] + body.position[2] - record.position[2][start],
+            rate_error: state.lag(i),
+            elapsed: record.time[i] - since,
+        };
+        body = extended::moved(&body, p, &drive, record.time[i + 1] - record.time[i]);
+        if reached.len() < AT_S.len() && record.time[i + 1] >= record.time[start] + AT_S[reached.len()] - 1e-6 {
+            reached.push(Reached { sample: i + 1, body });
+        }
+    }
+    reached
 }

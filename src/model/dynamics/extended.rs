@@ -1,15 +1,16 @@
 //! The compact model with effects that it lacks: one step, divided into parts that pass through the stages.
 
 pub mod memory;
+mod motion;
 mod stages;
 
 use super::{Factors, Parameters, State, battery};
 use crate::base::lane::{Lane, Real, build};
-use crate::model::attitude::{body_axes, compose, dot, normalized, small_rotation};
 use crate::model::effects::{self, EffectValues};
 use crate::model::vehicle::Vehicle;
 
 pub use memory::Memory;
+pub use motion::{Drive, RigidBody, moved};
 pub use stages::{
     ForceInputs, actuator_response, body_rates, command_delays, elapsed, force, loaded, specific_force, terminal,
     throttle,
@@ -105,31 +106,16 @@ fn part<R: Real>(s: &mut State<R>, p: &Extended<R>, memory: &mut Memory<R>, sent
     let (command, slope) = actuator_response(p, s.command, memory.slope, sent, voltage, h);
     let mean: [R; 4] = build!(|i| (s.command[i] + command[i]) * R::of(0.5));
     let rates = body_rates(p, mean);
-
-    let half_turn = small_rotation(rates, half);
-    let middle = compose(s.attitude, half_turn);
-    let axes = body_axes(middle);
-    let velocity: [R; 3] = build!(|i| dot(axes[i], s.velocity));
     let mut rate_error = R::zero();
     for i in 0..3 {
         rate_error = rate_error + (sent[i] - mean[i]).abs();
     }
-    let elapsed = elapsed(p, open);
-    let height = s.position[2];
-    let inputs = ForceInputs { command: mean[3], voltage, axes, velocity, rates, height, rate_error, elapsed };
-    let pushed = force(p, &inputs);
-    let acceleration: [R; 3] = build!(|i| {
-        let world = axes[0][i].mul_add(pushed[0], axes[1][i].mul_add(pushed[1], axes[2][i] * pushed[2]));
-        if i == 2 { world - p.compact.gravity } else { world }
-    });
-    let velocity: [R; 3] = build!(|i| acceleration[i].mul_add(h, s.velocity[i]));
+    let (elapsed, height) = (elapsed(p, open), s.position[2]);
+    let drive = Drive { command: mean[3], voltage, rates, height, rate_error, elapsed };
+    let body = RigidBody { position: s.position, velocity: s.velocity, attitude: s.attitude };
+    let RigidBody { position, velocity, attitude } = moved(&body, p, &drive, h);
     memory.slope = slope;
     memory.polarisation = polarisation;
-    *s = State {
-        position: build!(|i| (s.velocity[i] + velocity[i]).mul_add(half, s.position[i])),
-        velocity,
-        attitude: normalized(compose(middle, half_turn)),
-        command,
-        voltage: battery::discharged(open, p.compact.voltage_rate, half),
-    };
+    let voltage = battery::discharged(open, p.compact.voltage_rate, half);
+    *s = State { position, velocity, attitude, command, voltage };
 }
