@@ -22,6 +22,7 @@ pub mod horizon;
 pub mod judge;
 pub mod kinematics;
 pub mod model;
+pub mod numbers;
 pub mod oscillation;
 pub mod place;
 pub mod plan;
@@ -32,6 +33,7 @@ pub mod rank;
 pub mod record;
 pub mod score;
 pub mod select;
+pub mod size;
 pub mod skew;
 pub mod structure;
 pub mod trial;
@@ -41,11 +43,13 @@ use crate::base::stats::mean;
 use crate::insight::Watch;
 use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
-use crate::model::effects;
+use crate::model::effects::{self, ResidualChannel, Role};
 use crate::model::vehicle::Vehicle;
 use finding::{Diagnosis, Finding, Residual, Status, Verdict};
 use judge::{Judge, Judged};
 use model::Model;
+use numbers::span;
+use predict::{PUSH, TURN};
 use problem::Problem;
 use record::FlightRecord;
 use select::{Added, Selection};
@@ -174,9 +178,9 @@ fn biases(judge: &Judge) -> Vec<Judged> {
     let point = &judge.selection.point;
     let seen = |first: usize| !judge.problem.rows[first].is_empty();
     let mut out = Vec::new();
-    for (id, channel) in [("gyro_bias", 6), ("accel_bias", 9)] {
-        let Some(card) = effects::card(id) else { continue };
-        let size = model::span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
+    for card in effects::acting(Role::ConstantError) {
+        let channel = if card.channels.contains(&ResidualChannel::Turn) { TURN } else { PUSH };
+        let size = span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
         if seen(channel) && size > SHARE * card.parameters[0].typical[0] {
             out.push(judge.judge(&Added { card, ties: Vec::new() }));
         }

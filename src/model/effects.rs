@@ -1,86 +1,27 @@
-//! What the compact model can get wrong: optional effects, each an extension of the model whose parameters are 0 where it is absent.
+//! What the compact model can get wrong: optional effects, each an extension of the model whose parameters are 0 where
+//! it is absent.
 //!
-//! One file is one effect: its card (names, parameters, signature, rivals, manoeuvre) and its equation, generic over
-//! [`Real`]. Simulator and diagnosis call the same equation at the same place of [`crate::model::dynamics::extended`]. To add an effect, write its file
-//! and its line in the list below.
+//! One file is one effect: its card (names, parameters, what it reads and writes, rivals, manoeuvre) and its equation,
+//! generic over [`Real`]. Simulator and diagnosis call the same equation at the same place of
+//! [`crate::model::dynamics::extended`]. To add an effect, write its file and its line in the list below.
 
+mod card;
+mod quantity;
 mod stages;
+mod values;
 
-use crate::base::lane::{Lane, Real};
+use crate::base::lane::Real;
+pub use card::{
+    Card, CompactNumber, EffectKind, EffectParameter, Evidence, RateResponse, ResidualChannel, Role, Shown, Twin,
+};
+pub use quantity::{Quantities, Quantity};
 pub use stages::{
     Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, RelativeWind, Sensed, Setpoint, ThrustInput,
 };
+pub use values::EffectValues;
 
-/// What a person and the diagnosis have to know about an effect.
-#[derive(Debug)]
-pub struct Card {
-    /// What the program prints, writes and reads, such as `axial_inflow`.
-    pub id: &'static str,
-    /// The field's name for it.
-    pub name: &'static str,
-    /// What it means to a pilot, in one sentence.
-    pub sentence: &'static str,
-    pub kind: EffectKind,
-    /// All are 0 where the effect is absent.
-    pub parameters: &'static [EffectParameter],
-    /// Channels of the residual that it can show in.
-    pub channels: &'static [ResidualChannel],
-    /// What gives it away.
-    pub signature: &'static str,
-    /// Identifiers of effects that look alike.
-    pub rivals: &'static [&'static str],
-    /// What a pilot flies to tell it from its rivals, and the kinds of manoeuvres that `racer fly --pilot` flies for it.
-    pub manoeuvre: (&'static str, &'static [&'static str]),
-    /// The parameters as people read them, where they differ from those of the equation.
-    pub shown: Option<Shown>,
-}
-
-/// From the equation's parameters (and the time constant of the roll rate, s, and of the thrust, s) to what people read: name, value, unit.
-pub type Shown = fn(&[f64], [f64; 2]) -> Vec<(&'static str, f64, &'static str)>;
-
-/// A parameter of an effect.
-#[derive(Debug)]
-pub struct EffectParameter {
-    pub name: &'static str,
-    pub unit: &'static str,
-    /// Bounds of the search.
-    pub low: f64,
-    pub high: f64,
-    /// Sizes that matter on a 5-inch racing quadrotor; below half the first, nobody would notice.
-    pub typical: [f64; 2],
-}
-
-/// Where an effect belongs, and so what is done about it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EffectKind {
-    /// Extends the simulator.
-    Timing,
-    Thrust,
-    Battery,
-    Drag,
-    /// Disturbs the simulator at random: found in the variance, not in the mean.
-    Random,
-    /// Corrects the log and widens the observation noise; never becomes dynamics.
-    Sensor,
-}
-
-/// A residual.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ResidualChannel {
-    /// Gyro less simulated body rate, rad/s.
-    Rate,
-    /// Accelerometer less simulated specific force, m/s2.
-    Force,
-    /// Turn of the attitude less integrated gyro, over a quarter of a second, rad.
-    Turn,
-    /// Change of velocity less integrated accelerometer, over a quarter of a second, m/s.
-    Push,
-    /// Voltage less simulated voltage, V.
-    Voltage,
-}
-
-/// One effect. Every function may change what passes its stage, by the effect's parameters `k` in the order of the card; those
-/// it does not write leave their stage alone.
+/// One effect. Every function may change what passes its stage, by the effect's parameters `k` in the order of the
+/// card; those it does not write leave their stage alone.
 pub trait Effect {
     const CARD: Card;
     /// When commands arrive.
@@ -126,8 +67,9 @@ macro_rules! effects {
         enum LogIndex { $($Log),* }
 
         effects!(@stage $($model::$Model)*;
-            command_delay CommandDelay, setpoint Setpoint, actuator Actuator, body_rates BodyRates, battery_load BatteryLoad,
-            thrust_input ThrustInput, relative_wind RelativeWind, aerodynamic_forces AerodynamicForces,);
+            command_delay CommandDelay, setpoint Setpoint, actuator Actuator, body_rates BodyRates,
+            battery_load BatteryLoad, thrust_input ThrustInput, relative_wind RelativeWind,
+            aerodynamic_forces AerodynamicForces,);
 
         /// Every sensor's effect on a reading; `k` holds the parameters of all of [`LOG`].
         #[inline(always)]
@@ -223,62 +165,41 @@ pub const LOG_COUNT: usize = offset(&LOG, LOG.len());
 
 /// The card of this name.
 pub fn card(id: &str) -> Option<&'static Card> {
-    MODEL.iter().chain(&LOG).find(|card| card.id == id).copied()
+    cards().find(|card| card.id == id)
 }
 
 /// Where the parameters of effect `id` are among those of [`MODEL`] followed by those of [`LOG`].
 pub fn span(id: &str) -> Option<std::ops::Range<usize>> {
-    let i = MODEL.iter().chain(&LOG).position(|card| card.id == id)?;
+    let i = cards().position(|card| card.id == id)?;
     let from = if i < MODEL.len() { offset(&MODEL, i) } else { COUNT + offset(&LOG, i - MODEL.len()) };
     Some(from..from + card(id)?.parameters.len())
 }
 
-/// The parameters of all effects of the simulator.
-#[derive(Clone, Copy, Debug)]
-pub struct EffectValues<R> {
-    pub numbers: [R; COUNT],
-    /// Bit i: effect i of [`MODEL`] is present. What is absent costs a test of its bit.
-    active: u64,
+/// Every effect, those of the simulator first.
+pub fn cards() -> impl Iterator<Item = &'static Card> {
+    MODEL.into_iter().chain(LOG)
 }
 
-impl EffectValues<f64> {
-    /// Effects with a number that is not 0 are present.
-    pub fn new(numbers: [f64; COUNT]) -> Self {
-        let present = |i: usize| {
-            let from = offset(&MODEL, i);
-            numbers[from..from + MODEL[i].parameters.len()].iter().any(|k| *k != 0.0)
-        };
-        EffectValues { numbers, active: (0..MODEL.len()).filter(|&i| present(i)).fold(0, |all, i| all | 1 << i) }
-    }
+/// The effects that act on a log in this way.
+pub fn acting(role: Role) -> impl Iterator<Item = &'static Card> {
+    cards().filter(move |card| card.role == role)
 }
 
-impl<R: Copy> EffectValues<R> {
-    /// Whether any effect is present.
-    #[inline(always)]
-    pub fn any(&self) -> bool {
-        self.active != 0
-    }
-
-    /// Whether the rates oscillate, and whether their change is limited.
-    #[inline(always)]
-    pub fn shapes(&self) -> (bool, bool) {
-        let has = |i: Index| self.active & 1 << i as u32 != 0;
-        (has(Index::RateSecondOrder), has(Index::RateSlewLimit))
-    }
-
-    /// Converts every number, in a fixed order.
-    #[inline(always)]
-    pub fn map<S>(&self, f: impl FnMut(R) -> S) -> EffectValues<S> {
-        EffectValues { numbers: self.numbers.map(f), active: self.active }
-    }
+/// Whether two effects look alike: one of them says so.
+pub fn are_rivals(a: &Card, b: &Card) -> bool {
+    a.rivals.contains(&b.id) || b.rivals.contains(&a.id)
 }
 
-impl<L: Lane> EffectValues<L> {
-    /// Replaces the numbers of one lane; the block has every effect that one of its lanes has.
-    pub fn set_lane(&mut self, lane: usize, new: &EffectValues<L::Elem>) {
-        self.active |= new.active;
-        self.numbers.iter_mut().zip(&new.numbers).for_each(|(own, &new)| own.set(lane, new));
-    }
+/// Identifiers of the effects that look like this one: those that it names, then those that name it.
+pub fn rivals(card: &Card) -> Vec<&'static str> {
+    let others = cards().filter(|other| other.rivals.contains(&card.id) && !card.rivals.contains(&other.id));
+    card.rivals.iter().copied().chain(others.map(|other| other.id)).collect()
+}
+
+/// Two effects of the same mean that this evidence tells apart: the one whose card says so, and the other.
+pub fn twins(told_by: Evidence) -> Option<(&'static Card, &'static Card)> {
+    let told = |card: &'static Card| Some((card, self::card(card.twin.filter(|t| t.told_by == told_by)?.effect)?));
+    cards().find_map(told)
 }
 
 #[cfg(test)]
@@ -286,27 +207,23 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    fn all() -> impl Iterator<Item = &'static Card> {
-        MODEL.iter().chain(&LOG).copied()
-    }
-
     #[test]
     fn names_are_unique_and_every_rival_is_one() {
-        let ids: BTreeSet<_> = all().map(|card| card.id).collect();
+        let ids: BTreeSet<_> = cards().map(|card| card.id).collect();
         assert_eq!(ids.len(), MODEL.len() + LOG.len());
-        for card in all() {
+        for card in cards() {
             let names: BTreeSet<_> = card.parameters.iter().map(|p| p.name).collect();
             assert_eq!(names.len(), card.parameters.len(), "{}", card.id);
             for rival in card.rivals {
                 let other = super::card(rival).unwrap_or_else(|| panic!("{}: {rival} is no effect", card.id));
-                assert!(rival != &card.id && other.rivals.contains(&card.id), "{} and {rival}", card.id);
+                assert!(rival != &card.id && are_rivals(card, other) && rivals(other).contains(&card.id), "{rival}");
             }
         }
     }
 
     #[test]
     fn the_pilot_can_fly_every_manoeuvre() {
-        for card in all() {
+        for card in cards() {
             assert!(!card.manoeuvre.1.is_empty(), "{}", card.id);
             for kind in card.manoeuvre.1 {
                 assert!(crate::flight::pilot::Kind::named(kind).is_some(), "{}: {kind}", card.id);
@@ -316,7 +233,7 @@ mod tests {
 
     #[test]
     fn bounds_hold_absence_and_the_typical() {
-        for card in all() {
+        for card in cards() {
             assert!(!card.parameters.is_empty() && !card.channels.is_empty(), "{}", card.id);
             for EffectParameter { name, low, high, typical: [least, most], .. } in card.parameters {
                 assert!((*low..=*high).contains(&0.0), "{}.{name}", card.id);
@@ -328,7 +245,7 @@ mod tests {
     #[test]
     fn spans_are_side_by_side() {
         let mut end = 0;
-        for card in all() {
+        for card in cards() {
             let span = span(card.id).expect("listed");
             assert_eq!((span.start, span.len()), (end, card.parameters.len()), "{}", card.id);
             end = span.end;

@@ -3,6 +3,7 @@
 use super::model::Model;
 use super::record::FlightRecord;
 use crate::model::dynamics::extended::{self, Extended};
+use crate::model::effects::Role;
 
 /// The filtered commands at every sample.
 pub struct ActuatorResponse {
@@ -33,8 +34,8 @@ pub fn actuator_response(
     let late = extended::command_delays(p);
     // Roll and pitch, yaw, and thrust arrive each at their time.
     let late = [late[0] + offset, late[2] + offset, late[3]];
-    let stretch = 1.0 / (1.0 + model.of(x, "clock_skew", "skew"));
-    let lost = model.of(x, "command_dropout", "probability");
+    let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
+    let lost = model.acting(x, Role::CommandsLost);
     let n = record.time.len();
     let mut out = ActuatorResponse {
         command: Vec::with_capacity(n),

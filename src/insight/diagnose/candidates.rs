@@ -1,12 +1,15 @@
 //! Directions in which the prediction could change, and by how much each changes it.
 
 use super::fit::FitPoint;
-use super::model::{BEGIN, DISCHARGE, Stage, cards, span};
+use super::numbers::{BEGIN, DISCHARGE, span};
 use super::problem::{ChannelValues, Problem};
-use super::trial::rivals;
 use super::whiten::Whitener;
-use crate::model::effects::{Card, EffectKind};
+use crate::model::effects::{self, Card, EffectKind, Quantity, Role, are_rivals};
 use rayon::prelude::*;
+
+/// What others are computed from: a cause that changes one of these changes what other causes would do.
+const UPSTREAM: [Quantity; 5] =
+    [Quantity::RateCommand, Quantity::ThrustCommand, Quantity::BodyRates, Quantity::Voltage, Quantity::GyroTime];
 
 /// A way to begin with an effect: numbers and their values.
 #[derive(Clone, Debug)]
@@ -30,9 +33,9 @@ impl Candidate {
 
 /// The numbers of the compact model and of constant sensor errors that the flights tell anything about.
 pub fn base_numbers(problem: &Problem) -> Vec<usize> {
-    let biases = ["gyro_bias", "accel_bias"].into_iter().filter_map(crate::model::effects::card).flat_map(span);
+    let biases = effects::acting(Role::ConstantError).flat_map(span);
     let volts = BEGIN..problem.model.numbers.len();
-    let own = cards().flat_map(span).filter(|&k| problem.model.base[k] != 0.0);
+    let own = effects::cards().flat_map(span).filter(|&k| problem.model.base[k] != 0.0);
     let mut all: Vec<usize> = (0..=DISCHARGE).chain(biases).chain(volts).chain(own).collect();
     all.sort_unstable();
     all.dedup();
@@ -50,8 +53,7 @@ pub fn directions(card: &'static Card) -> Vec<Direction> {
         [small, (small * large).sqrt(), large]
     };
     let numbers: Vec<usize> = at.collect();
-    let shape = card.parameters.iter().position(|p| p.name == "tau" && card.parameters.len() > 1);
-    if let Some(shape) = shape {
+    if let Some(shape) = card.shape {
         let [small, _, large] = sizes(shape);
         let grid = (0..4).map(|i| small * (large / small).powf(f64::from(i) / 3.0));
         let main = 1 - shape;
@@ -63,7 +65,7 @@ pub fn directions(card: &'static Card) -> Vec<Direction> {
         return numbers.iter().enumerate().map(|(i, &k)| Direction { card, start: vec![(k, sizes(i)[0])] }).collect();
     }
     let signs: &[f64] = if card.parameters[0].low < 0.0 { &[1.0, -1.0] } else { &[1.0] };
-    let shifts = card.kind == EffectKind::Timing || card.id == "propwash" || card.kind == EffectKind::Sensor;
+    let shifts = card.nonlinear || matches!(card.kind, EffectKind::Timing | EffectKind::Sensor);
     let wanted = if shifts { 4 - signs.len() } else { 1 };
     let sizes = sizes(0).into_iter().take(wanted);
     sizes
@@ -75,18 +77,20 @@ pub fn directions(card: &'static Card) -> Vec<Direction> {
 /// Candidates: effects whose mean can be seen, that the base does not already hold.
 pub fn causes(problem: &Problem) -> Vec<&'static Card> {
     let in_base = |card: &Card| span(card).any(|k| problem.model.base[k] != 0.0);
-    let bias = |card: &Card| matches!(card.id, "gyro_bias" | "accel_bias");
     let one_clock = problem.records.iter().all(|r| r.one_clock);
-    cards()
-        .filter(|card| !(one_clock && card.id == "clock_skew"))
-        .filter(|card| card.id != "gusts" && !bias(card) && !in_base(card))
-        .collect()
+    let can_be_tried = |card: &&Card| match card.role {
+        // Found in the variance, and in every fit.
+        Role::RandomForce | Role::ConstantError => false,
+        Role::ClockFast => !one_clock,
+        _ => true,
+    };
+    effects::cards().filter(can_be_tried).filter(|card| !in_base(card)).collect()
 }
 
 /// The columns of all directions; those that change nothing are left out.
 pub fn candidates(problem: &Problem, whitener: &Whitener, point: &FitPoint, cards: &[&'static Card]) -> Vec<Candidate> {
     let mut all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
-    if let Some(card) = cards.iter().find(|card| card.id == "clock_skew")
+    if let Some(card) = cards.iter().find(|card| card.role == Role::ClockFast)
         && let Some(skew) = super::skew::estimate(problem, &point.state, &point.residual)
         && skew.abs() > 0.5 * card.parameters[0].typical[0]
     {
@@ -116,12 +120,12 @@ pub fn renewed(
     let Some(last) = held.last() else { return found };
     found.retain(|c| c.card().id != last.id);
     let of = |card: &Card| span(card).map(|k| &problem.model.numbers[k]);
-    let early = of(last).any(|n| n.stage <= Stage::Battery);
+    let early = of(last).any(|n| n.writes.any(&UPSTREAM));
     let (rates, forces) = (of(last).any(|n| n.rates), of(last).any(|n| n.forces));
     let stale = |c: &Candidate| {
         early && of(c.card()).any(|n| rates && n.rates || forces && n.forces)
             || tied.iter().any(|(card, _)| card.id == c.card().id)
-            || rivals(last, c.card())
+            || are_rivals(last, c.card())
     };
     found.par_iter_mut().filter(|c| stale(c)).for_each(|c| {
         let change = problem.secant(&point.state, &point.x, &c.direction.start, 1.0);

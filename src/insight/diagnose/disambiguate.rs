@@ -1,77 +1,96 @@
-//! Causes that have the same mean, decided by what else they would leave.
+//! Causes that have the same mean, told apart by what else they would leave.
 
 use super::fit;
-use super::model;
+use super::numbers::span;
 use super::problem::Problem;
 use super::random;
 use super::select::{Added, Selection};
 use crate::base::stats::mean;
 use crate::model::constants::CONTROL_S;
-use crate::model::effects;
+use crate::model::effects::{self, Card, Evidence, Role};
 
-/// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two of the same size.
+/// Agreement of the two times, s, and as a share.
+const SAME: [f64; 2] = [6e-4, 0.05];
+/// And of a lag of the velocity that comes from it.
+const LAG: f64 = 0.5;
+
+/// Where the first number of an effect is.
+fn at(card: &Card) -> usize {
+    span(card).start
+}
+
+/// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two of
+/// the same size.
 pub fn clocks(problem: &Problem, selection: &mut Selection) {
-    /// Agreement of the two times, s, and as a share.
-    const SAME: [f64; 2] = [6e-4, 0.05];
-    /// And of a lag of the velocity that comes from it.
-    const LAG: f64 = 0.5;
-    let [Some(delay), Some(offset)] = ["rate_delay", "stream_offset"].map(effects::card) else { return };
+    let Some((stamped, delayed)) = effects::twins(Evidence::OdometryClock) else { return };
     let moved = mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>());
-    let [asked, stamped] = [delay, offset].map(|card| model::span(card).start);
-    let Some(i) = selection.added.iter().position(|a| a.card.id == delay.id || a.card.id == offset.id) else { return };
+    let is_one = |a: &Added| [stamped.id, delayed.id].contains(&a.card.id);
+    let Some(i) = selection.added.iter().position(is_one) else { return };
     let mut x = selection.point.x.clone();
-    let late = x[asked] + x[stamped];
-    let both = selection.added.iter().filter(|a| a.card.id == delay.id || a.card.id == offset.id).count() > 1;
+    let late = x[at(delayed)] + x[at(stamped)];
+    let both = selection.added.iter().filter(|a| is_one(a)).count() > 1;
     if moved == 0.0 || both || (late - moved).abs() > SAME[0] + SAME[1] * moved.abs() {
         return;
     }
-    (x[asked], x[stamped]) = (0.0, late);
+    (x[at(delayed)], x[at(stamped)]) = (0.0, late);
     let mut free = selection.point.free.clone();
-    free.retain(|k| *k != asked && *k != stamped);
-    free.push(stamped);
-    selection.added[i] = Added { card: offset, ties: Vec::new() };
+    free.retain(|k| *k != at(delayed) && *k != at(stamped));
+    free.push(at(stamped));
+    selection.added[i] = Added { card: stamped, ties: Vec::new() };
     // The odometry was moved to a gyro that was late itself: its velocity seems late by as much, and is none.
-    selection.added.retain(|a| a.card.id != "velocity_lag" || (x[model::span(a.card).start] / moved - 1.0).abs() > LAG);
+    selection.added.retain(|a| a.card.role != Role::VelocityLag || (x[at(a.card)] / moved - 1.0).abs() > LAG);
     selection.point = fit::fit(problem, &selection.whitener, &x, &free);
 }
 
 /// Lost commands and a short delay have the same mean: what single stick movements leave decides.
 pub fn chance(problem: &Problem, selection: &mut Selection) -> Option<random::Lost> {
-    let dropout = effects::card("command_dropout")?;
+    let (dropout, delayed) = effects::twins(Evidence::SingleMovements)?;
     let lost = random::lost_commands(problem, selection);
     let are_lost = random::are_lost(&lost, dropout);
-    let at = |card: &effects::Card| model::span(card).start;
-    let mut x = selection.point.x.clone();
-    let mut free = selection.point.free.clone();
-    // A delay that lost commands account for is none.
-    let explained = |a: &Added, x: &[f64]| a.card.id == "rate_delay" && x[at(a.card)] < 3.0 * lost.share * CONTROL_S;
-    if are_lost {
-        let gone: Vec<Added> =
-            selection.added.iter().filter(|a| explained(a, &x) || a.card.id == dropout.id).cloned().collect();
-        for a in &gone {
-            model::span(a.card).for_each(|k| x[k] = 0.0);
-            free.retain(|k| !model::span(a.card).contains(k));
-            selection.added.retain(|other| other.card.id != a.card.id);
-        }
-        selection.added.push(Added { card: dropout, ties: Vec::new() });
-        // Counted, not fitted: its mean is a delay that the time constants take up.
-        x[at(dropout)] = lost.share;
+    let (x, free) = if are_lost {
+        counted(selection, dropout, delayed, lost.share)
     } else if let Some(i) = selection.added.iter().position(|a| a.card.id == dropout.id) {
-        // Its mean is there, its variance is not: the rival that has the same mean.
-        let other = selection.added[i].ties.first().copied().or(effects::card("rate_delay"));
-        let other = other.filter(|o| selection.added.iter().all(|a| a.card.id != o.id));
-        let mean = std::mem::take(&mut x[at(dropout)]) * CONTROL_S;
-        free.retain(|k| *k != at(dropout));
-        selection.added.remove(i);
-        if let Some(other) = other {
-            x[at(other)] = mean;
-            free.extend(model::span(other));
-            selection.added.insert(i, Added { card: other, ties: Vec::new() });
-        }
+        not_lost(selection, i, delayed)
     } else {
         selection.added.iter_mut().for_each(|a| a.ties.retain(|c| c.id != dropout.id));
         return None;
-    }
+    };
     selection.point = fit::fit(problem, &selection.whitener, &x, &free);
     are_lost.then_some(lost)
+}
+
+/// Numbers, and which of them are free, where this share of the commands is lost.
+fn counted(selection: &mut Selection, dropout: &'static Card, delayed: &Card, share: f64) -> (Vec<f64>, Vec<usize>) {
+    let mut x = selection.point.x.clone();
+    let mut free = selection.point.free.clone();
+    // A delay that lost commands account for is none.
+    let explained = |a: &Added| a.card.id == delayed.id && x[at(a.card)] < 3.0 * share * CONTROL_S;
+    let gone: Vec<Added> =
+        selection.added.iter().filter(|a| explained(a) || a.card.id == dropout.id).cloned().collect();
+    for a in &gone {
+        span(a.card).for_each(|k| x[k] = 0.0);
+        free.retain(|k| !span(a.card).contains(k));
+        selection.added.retain(|other| other.card.id != a.card.id);
+    }
+    selection.added.push(Added { card: dropout, ties: Vec::new() });
+    // Counted, not fitted: its mean is a delay that the time constants take up.
+    x[at(dropout)] = share;
+    (x, free)
+}
+
+/// The same where lost commands, added as number `i`, are none: their mean is there, their variance is not. The rival that
+/// has the same mean takes their place.
+fn not_lost(selection: &mut Selection, i: usize, delayed: &'static Card) -> (Vec<f64>, Vec<usize>) {
+    let mut x = selection.point.x.clone();
+    let mut free = selection.point.free.clone();
+    let Added { card: dropout, ties } = selection.added.remove(i);
+    let mean = std::mem::take(&mut x[at(dropout)]) * CONTROL_S;
+    free.retain(|k| *k != at(dropout));
+    let other = ties.first().copied().unwrap_or(delayed);
+    if selection.added.iter().all(|a| a.card.id != other.id) {
+        x[at(other)] = mean;
+        free.extend(span(other));
+        selection.added.insert(i, Added { card: other, ties: Vec::new() });
+    }
+    (x, free)
 }

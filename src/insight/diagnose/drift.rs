@@ -3,7 +3,7 @@
 use super::finding::{Drift, Finding, Status, Value};
 use super::fit::{covariance, fit};
 use super::judge::Judge;
-use super::model::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
+use super::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
 use super::problem::ChannelValues;
 use crate::base::stats::NORMAL_95;
 use crate::insight::estimate::gram::Grams;

@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, Status};
 use super::judge::Judge;
-use super::model::span;
+use super::numbers::span;
 use crate::model::effects::{self, MODEL};
 use crate::model::vehicle::Vehicle;
 use crate::model::vehicle::extension::Extension;

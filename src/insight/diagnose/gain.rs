@@ -3,7 +3,7 @@
 use super::finding::{Ahead, Gain};
 use super::fit::{self, FitPoint};
 use super::horizon;
-use super::model::{BEGIN, ModelNumber};
+use super::numbers::{BEGIN, ModelNumber};
 use super::predict::CHANNELS;
 use super::problem::Problem;
 use super::select::{self, Selection};

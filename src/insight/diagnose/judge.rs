@@ -3,11 +3,12 @@
 use super::finding::{Finding, Status, Value};
 use super::fit::{FitPoint, covariance};
 use super::horizon;
-use super::model::{TAU, span};
+use super::numbers::{TAU, span};
 use super::predict::{CHANNELS, kind};
 use super::problem::{ChannelValues, Problem};
 use super::score::score;
 use super::select::{Added, Selection};
+use super::size::{is_bounded, is_material};
 use super::structure::NAMES;
 use crate::base::stats::{NORMAL_95, mean};
 use crate::insight::estimate::gram::Grams;
@@ -300,22 +301,4 @@ impl<'a> Judge<'a> {
         let apart = distances.fold(0.0, f64::max);
         if apart > 0.0 { apart } else { sensors }
     }
-}
-
-/// Whether a number of an effect ends at the bound of its range: then it stands in for something else.
-pub fn is_bounded(problem: &Problem, card: &Card, x: &[f64]) -> bool {
-    let at_end = |k: usize| {
-        let n = &problem.model.numbers[k];
-        x[k] != 0.0 && (x[k] <= n.low || x[k] >= n.high)
-    };
-    span(card).any(at_end)
-}
-
-/// Whether the size of an effect is one that anybody would notice: half the smallest of its typical ones.
-pub fn is_material(card: &Card, x: &[f64]) -> bool {
-    let at = span(card);
-    let share = |(p, k): (&crate::model::effects::EffectParameter, usize)| (x[k] / p.typical[0]).powi(2);
-    // A shape is no size.
-    let sizes = card.parameters.iter().zip(at).filter(|(p, _)| !(p.name == "tau" && card.parameters.len() > 1));
-    sizes.map(share).sum::<f64>().sqrt() >= 0.5
 }

@@ -5,7 +5,7 @@ use super::record::FlightRecord;
 use crate::base::lane::build;
 use crate::model::attitude::{Quaternion, body_axes, compose, in_world, normalized, rotation_vector, small_rotation};
 use crate::model::dynamics::extended;
-use crate::model::effects::{self, Sensed};
+use crate::model::effects::{self, Role, Sensed};
 
 /// What the IMU, corrected, integrates to over each window: the turn (rotation vector) and the change of velocity (less gravity), both in the
 /// body frame at the window's beginning.
@@ -17,10 +17,10 @@ pub fn integrate(model: &Model, record: &FlightRecord, x: &[f64], command: &[[f6
     }
     let k = model.sensors(x);
     // A gyro that is late was not what the odometry's clock was to be moved to.
-    let late = model.of(x, "stream_offset", "offset");
+    let late = model.acting(x, Role::GyroLate);
     let offset = if late == 0.0 { 0.0 } else { late - record.moved };
-    let stretch = 1.0 / (1.0 + model.of(x, "clock_skew", "skew"));
-    let tau = model.of(x, "velocity_lag", "tau");
+    let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
+    let tau = model.acting(x, Role::VelocityLag);
     let gyro = shifted(record, offset);
     let fine = &record.fine;
     let slope = slopes(&fine.time, &gyro);

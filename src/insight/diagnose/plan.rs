@@ -2,10 +2,10 @@
 //! nearest rival.
 
 use super::finding::{Detectable, NotDetectable};
-use super::model::{cards, span};
+use super::numbers::span;
 use super::problem::Problem;
 use super::rank::{ABSORBED, Reach};
-use crate::model::effects::{Card, EffectKind, ResidualChannel};
+use crate::model::effects::{self, Card, EffectKind, ResidualChannel, Role};
 
 /// Standard deviations that a size has to be, to be seen.
 const SEEN: f64 = 5.0;
@@ -13,7 +13,7 @@ const SEEN: f64 = 5.0;
 /// What the flights could show, and what not, and why.
 pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<NotDetectable>) {
     let (mut can, mut cannot) = (Vec::new(), Vec::new());
-    for card in cards() {
+    for card in effects::cards() {
         let p = &card.parameters[0];
         let hidden =
             |why: String, smallest: Option<f64>| NotDetectable { effect: card.id, why, smallest, unit: p.unit };
@@ -23,7 +23,7 @@ pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<NotDet
         let Some(r) = reach.iter().find(|r| r.card.id == card.id) else {
             if let Some(why) = lacking(problem, card) {
                 cannot.push(hidden(why, None));
-            } else if card.kind != EffectKind::Random && !matches!(card.id, "gyro_bias" | "accel_bias") {
+            } else if card.kind != EffectKind::Random && card.role != Role::ConstantError {
                 cannot.push(hidden(format!("nothing flown would show it: {}", card.manoeuvre.0), None));
             }
             continue;

@@ -2,7 +2,8 @@
 
 use super::actuator_response::{ActuatorResponse, actuator_response, body_rates, supplied};
 use super::kinematics::{self, lagged, slopes};
-use super::model::{BEGIN, Model, Stage};
+use super::model::Model;
+use super::numbers::BEGIN;
 use super::record::FlightRecord;
 use crate::base::lane::{Kernel, Lane32, Level, build, dispatch};
 use crate::flight::lowpass::LowPass;
@@ -10,7 +11,7 @@ use crate::flight::series::period;
 use crate::model::attitude::{compose, dot, in_world, rotation_vector};
 use crate::model::dynamics::battery::discharged;
 use crate::model::dynamics::extended::{self, Extended, ForceInputs};
-use crate::model::effects::{self, ResidualChannel, Sensed};
+use crate::model::effects::{self, Card, Quantities, Quantity, ResidualChannel, Role, Sensed};
 use std::sync::Arc;
 
 /// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
@@ -55,22 +56,6 @@ pub struct Predicted {
     pub channels: [Arc<Vec<f64>>; CHANNELS],
 }
 
-/// What of a prediction has to be made again.
-#[derive(Clone, Copy, Debug)]
-pub struct Dirty {
-    /// From where on.
-    pub stage: Stage,
-    /// Whether only body rates change, or only what is about thrust and drag.
-    pub rates: bool,
-    pub forces: bool,
-    /// Whether the readings of the IMU are corrected in another way.
-    pub corrections: bool,
-}
-
-impl Dirty {
-    pub const ALL: Dirty = Dirty { stage: Stage::Response, rates: true, forces: true, corrections: true };
-}
-
 impl Predicted {
     /// Filtered thrust command at a sample, -1..1.
     pub fn thrust(&self, i: usize) -> f64 {
@@ -84,28 +69,27 @@ impl Predicted {
 
     /// Predicts `record`, number `flight`, at `x`.
     pub fn new(model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
-        Self::default().recomputed(Dirty::ALL, model, record, flight, x)
+        Self::default().recomputed(Quantities::ALL, model, record, flight, x)
     }
 
-    /// The same at other numbers, which change no more than `what`.
-    pub fn changed(&self, what: Dirty, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
-        self.clone().recomputed(what, model, record, flight, x)
+    /// The same at other numbers, of which no more is `dirty`.
+    pub fn changed(&self, dirty: Quantities, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
+        self.clone().recomputed(dirty, model, record, flight, x)
     }
 
-    fn recomputed(self, what: Dirty, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
-        dispatch(Level::best(), Recompute { from: self, what, model, record, flight, x })
+    fn recomputed(self, dirty: Quantities, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
+        dispatch(Level::best(), Recompute { from: self, dirty, model, record, flight, x })
     }
 
     #[inline(always)]
-    fn recompute(mut self, what: Dirty, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
+    fn recompute(mut self, dirty: Quantities, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
         let p = model.parameters(x);
-        let stage = what.stage;
-        if stage <= Stage::Response {
+        if dirty.any(&[Quantity::RateCommand, Quantity::ThrustCommand]) {
             let ActuatorResponse { command, lag, setpoint } = actuator_response(&p, record, model, x, 0.0);
             (self.command, self.lag, self.setpoint) = (command.into(), lag.into(), setpoint.into());
         }
-        if stage <= Stage::Spin && what.rates {
-            let offset = model.of(x, "stream_offset", "offset");
+        if dirty.any(&[Quantity::BodyRates, Quantity::GyroTime]) {
+            let offset = model.acting(x, Role::GyroLate);
             self.rates = body_rates(&p, record, &self.command).into();
             self.seen_rates = if offset == 0.0 {
                 self.rates.clone()
@@ -113,19 +97,19 @@ impl Predicted {
                 body_rates(&p, record, &actuator_response(&p, record, model, x, offset).command).into()
             };
         }
-        if stage <= Stage::Battery && what.forces {
+        if dirty.has(Quantity::Voltage) {
             self.discharge(&p, record, x[BEGIN + flight]);
+            self.channels[VOLTAGE] = record.volts.iter().map(|(i, _)| self.modelled_v[*i]).collect::<Vec<_>>().into();
         }
-        if stage <= Stage::Force && what.forces {
-            self.push(&p, record, model.of(x, "velocity_lag", "tau"), model.vehicle().gravity_m_s2);
+        if dirty.has(Quantity::SpecificForce) {
+            self.push(&p, record, model.acting(x, Role::VelocityLag), model.vehicle().gravity_m_s2);
         }
-        self.sense(&p, what, model, record, x);
-        if what.corrections {
+        if dirty.any(&[Quantity::Gyro, Quantity::Accelerometer]) {
+            self.sense(&p, dirty, model, record, x);
+        }
+        if dirty.has(Quantity::Integrated) {
             let all = kinematics::integrate(model, record, x, &self.command);
             all.into_iter().enumerate().for_each(|(c, values)| self.channels[TURN + c] = values.into());
-        }
-        if stage <= Stage::Battery && what.forces {
-            self.channels[VOLTAGE] = record.volts.iter().map(|(i, _)| self.modelled_v[*i]).collect::<Vec<_>>().into();
         }
         self
     }
@@ -190,13 +174,17 @@ impl Predicted {
 
     /// Readings, averaged over bins.
     #[inline(always)]
-    fn sense(&mut self, p: &Extended<f64>, what: Dirty, model: &Model, record: &FlightRecord, x: &[f64]) {
+    fn sense(&mut self, p: &Extended<f64>, dirty: Quantities, model: &Model, record: &FlightRecord, x: &[f64]) {
         let k = model.sensors(x);
-        let arm = ["rx", "ry", "rz"].iter().any(|side| model.of(x, "imu_lever_arm", side) != 0.0);
-        let acceleration = if arm { self.turning(p, record) } else { vec![[0.0; 3]; record.time.len()] };
+        let turning = |card: &&Card| card.reads.contains(&Quantity::AngularAcceleration);
+        let acceleration = if model.present(x).iter().any(turning) {
+            self.turning(p, record)
+        } else {
+            vec![[0.0; 3]; record.time.len()]
+        };
         let known =
             |c: usize| if c < 3 { record.commanded[0] } else { record.commanded[1] && (record.moves || c == 5) };
-        let wanted = |c: usize| known(c) && if c < 3 { what.rates } else { what.forces };
+        let wanted = |c: usize| known(c) && dirty.has(if c < 3 { Quantity::Gyro } else { Quantity::Accelerometer });
         let mut means: [Vec<f64>; 6] = Default::default();
         for &[from, to] in &record.bins {
             let mut sum = [0.0; 6];
@@ -242,7 +230,7 @@ impl Predicted {
 /// A fused multiply-add is an instruction below a kernel, and a call of a function elsewhere.
 struct Recompute<'a> {
     from: Predicted,
-    what: Dirty,
+    dirty: Quantities,
     model: &'a Model,
     record: &'a FlightRecord,
     flight: usize,
@@ -254,7 +242,7 @@ impl Kernel for Recompute<'_> {
 
     #[inline(always)]
     fn run<L: Lane32>(self) -> Predicted {
-        self.from.recompute(self.what, self.model, self.record, self.flight, self.x)
+        self.from.recompute(self.dirty, self.model, self.record, self.flight, self.x)
     }
 }
 

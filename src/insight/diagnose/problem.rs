@@ -88,8 +88,8 @@ impl Problem {
 
     /// Predicts at `x`, which differs from that of `state` in the numbers `which`.
     pub fn change(&self, state: &Predictions, which: &[usize], x: &[f64]) -> Predictions {
-        let what = self.model.dirty(which, x);
-        let one = |(f, record): (usize, &FlightRecord)| state[f].changed(what, &self.model, record, f, x);
+        let dirty = self.model.dirty(which, x);
+        let one = |(f, record): (usize, &FlightRecord)| state[f].changed(dirty, &self.model, record, f, x);
         self.records.iter().enumerate().map(one).collect()
     }
 

@@ -47,7 +47,7 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
     for axis in 0..3 {
         let (rows, residual) = (&problem.rows[RATE + axis], &selection.point.residual[RATE + axis]);
         let noise = robust_sd(residual);
-        let tau = x[super::model::TAU.start + axis];
+        let tau = x[super::numbers::TAU.start + axis];
         for (f, record) in problem.records.iter().enumerate() {
             let mut by_bin = vec![f64::NAN; record.bins.len()];
             let own = rows.iter().zip(residual).filter(|(row, _)| row.flight as usize == f);

@@ -2,22 +2,19 @@
 
 use super::candidates::{Candidate, base_numbers, candidates, causes, renewed};
 use super::fit::{self, FitPoint};
-use super::judge::is_material;
-use super::model::span;
+use super::numbers::span;
 use super::problem::{ChannelValues, Problem};
 use super::rank::{Reach, rank};
-use super::trial::{rivals, tied, try_best};
+use super::size::is_material;
+use super::trial::{GAIN, tied, try_best};
 use super::whiten::Whitener;
 use crate::insight::estimate::gram::Grams;
-use crate::model::effects::Card;
+use crate::model::effects::{Card, are_rivals};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// Most effects that are added.
 const MOST: usize = 8;
-/// Least fall of the whitened squares, and least number of agreeing stretches, for a candidate to be added.
-pub const GAIN: f64 = 30.0;
-pub const EVIDENCE: f64 = 9.0;
 /// Fall of the whitened squares for which even an effect of no size that matters is added.
 const NUISANCE: f64 = 400.0;
 /// Rivals compete where the one leaves at most this share of its gain to the other.
@@ -116,7 +113,7 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
         }
         let mut trials = try_best(problem, &whitener, &point, &found, &scored);
         // Beside a rival that is already there, it would only take that one's place.
-        trials.retain(|t| !(t.bounded(problem) && held.iter().any(|h| rivals(h, t.card))));
+        trials.retain(|t| !(t.bounded(problem) && held.iter().any(|h| are_rivals(h, t.card))));
         let best_of = |material: bool| {
             let fitting = trials.iter().filter(|t| !material || is_material(t.card, &t.point.x));
             fitting.max_by(|a, b| a.merit(problem).total_cmp(&b.merit(problem)))

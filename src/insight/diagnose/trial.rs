@@ -2,14 +2,16 @@
 
 use super::candidates::{Candidate, Direction};
 use super::fit::{self, FitPoint};
-use super::judge::is_bounded;
-use super::model::{TAU, span};
+use super::numbers::{place, span};
 use super::problem::Problem;
-use super::select::{EVIDENCE, GAIN};
+use super::size::is_bounded;
 use super::whiten::Whitener;
-use crate::model::effects::Card;
+use crate::model::effects::{Card, are_rivals};
 use rayon::prelude::*;
 
+/// Least fall of the whitened squares, and least number of agreeing stretches, for a candidate to be added.
+pub const GAIN: f64 = 30.0;
+pub const EVIDENCE: f64 = 9.0;
 /// Candidates refitted in a round, besides the rivals of the first.
 const SHORT_LIST: usize = 6;
 /// Fall of the whitened squares for which even a few stretches are enough to be looked at.
@@ -36,27 +38,12 @@ impl Trial {
     }
 }
 
-/// Whether two causes are known to look alike.
-pub fn rivals(a: &Card, b: &Card) -> bool {
-    a.rivals.contains(&b.id) || b.rivals.contains(&a.id)
-}
-
 /// Whether a trial comes so near the best that their stretches of time do not decide.
 pub fn tied(best: &Trial, other: &Trial) -> bool {
     let differences: Vec<f64> = other.point.cost.iter().zip(&best.point.cost).map(|(a, b)| a - b).collect();
     let sum: f64 = differences.iter().sum();
     let spread = differences.iter().map(|d| d * d).sum::<f64>().sqrt();
     other.gain > GAIN && sum < TIE * spread
-}
-
-/// The time constants that a delay is mistaken for.
-fn delayed(card: &Card) -> std::ops::Range<usize> {
-    match card.id {
-        "rate_delay" | "stream_offset" => TAU.start..TAU.start + 3,
-        "yaw_delay" => TAU.start + 2..TAU.start + 3,
-        "thrust_delay" => TAU.start + 3..TAU.end,
-        _ => 0..0,
-    }
 }
 
 /// Refits the first of the ranking, and the rivals of the very first.
@@ -67,49 +54,52 @@ pub fn try_best(
     found: &[Candidate],
     order: &[(usize, f64, f64)],
 ) -> Vec<Trial> {
+    let trials = Trials { problem, whitener, point, found };
+    chosen(found, order).par_iter().map(|&j| trials.best(j)).collect()
+}
+
+/// The candidates that are worth a fit, best first; one direction of each effect.
+fn chosen(found: &[Candidate], order: &[(usize, f64, f64)]) -> Vec<usize> {
     let mut chosen: Vec<usize> = Vec::new();
     for &(j, gain, evidence) in order {
         let card = found[j].card();
         let known = chosen.iter().any(|&i| found[i].card().id == card.id);
         let leader = chosen.first().map(|&i| found[i].card());
-        let rival = leader.is_some_and(|l| rivals(l, card));
-        if !known
-            && gain > 0.5 * GAIN
-            && (evidence > 0.5 * EVIDENCE || gain > RARE)
-            && (chosen.len() < SHORT_LIST || rival)
-        {
+        let rival = leader.is_some_and(|l| are_rivals(l, card));
+        let evident = gain > 0.5 * GAIN && (evidence > 0.5 * EVIDENCE || gain > RARE);
+        if !known && evident && (chosen.len() < SHORT_LIST || rival) {
             chosen.push(j);
         }
     }
-    let before = point.total();
-    let from = |x: &[f64], card: &'static Card, start: &[(usize, f64)], shrink: f64| {
-        let own: Vec<usize> = span(card).collect();
-        let mut x = x.to_vec();
-        own.iter().for_each(|&k| x[k] = 0.0);
-        start.iter().for_each(|(k, value)| x[*k] = value * shrink);
-        fit::refit(problem, whitener, point, &own, &x)
-    };
-    let refitted = |card, start: &[(usize, f64)], shrink| from(&point.x, card, start, shrink);
-    // A lag that was fitted without its delay is too long by about that.
-    let shortened = |card: &Card, delay: f64| {
-        let mut x = point.x.clone();
-        delayed(card).for_each(|k| x[k] = (x[k] - delay).max(0.3 * x[k]).max(problem.model.numbers[k].low));
-        x
-    };
-    let one = |&j: &usize| {
-        let Direction { card, start } = &found[j].direction;
-        let mut best = refitted(card, start, 1.0);
+    chosen
+}
+
+/// What effects are tried beside.
+struct Trials<'a> {
+    problem: &'a Problem,
+    whitener: &'a Whitener,
+    point: &'a FitPoint,
+    found: &'a [Candidate],
+}
+
+impl Trials<'_> {
+    /// The effect of candidate `j`, fitted from wherever it ends best.
+    fn best(&self, j: usize) -> Trial {
+        let Direction { card, start } = &self.found[j].direction;
+        let x = &self.point.x;
+        let before = self.point.total();
+        let mut best = self.fitted(x, card, start, 1.0);
         if best.total() > before {
             // Too far away: from a size too small to matter, downhill.
-            best = refitted(card, start, 0.2 * card.parameters[0].typical[0] / start[0].1.abs());
+            best = self.fitted(x, card, start, 0.2 * card.parameters[0].typical[0] / start[0].1.abs());
         }
         if card.parameters[0].unit == "s" {
             // Late signals fit at more than one delay.
-            let others = found.iter().enumerate().filter(|(i, c)| *i != j && c.card().id == card.id);
-            let others = others.map(|(_, other)| refitted(card, &other.direction.start, 1.0));
-            let beside =
-                found.iter().map(|c| &c.direction).filter(|d| d.card.id == card.id && !delayed(card).is_empty());
-            let beside = beside.map(|d| from(&shortened(card, d.start[0].1), card, &d.start, 1.0));
+            let directions =
+                || self.found.iter().map(|c| &c.direction).enumerate().filter(|(_, d)| d.card.id == card.id);
+            let others = directions().filter(|(i, _)| *i != j).map(|(_, d)| self.fitted(x, card, &d.start, 1.0));
+            let beside = directions().filter(|_| !card.absorbed_by.is_empty());
+            let beside = beside.map(|(_, d)| self.fitted(&self.shortened(card, d.start[0].1), card, &d.start, 1.0));
             for another in others.chain(beside) {
                 if another.total() < best.total() {
                     best = another;
@@ -118,6 +108,24 @@ pub fn try_best(
         }
         let gain = before - best.total();
         Trial { card, point: best, gain }
-    };
-    chosen.par_iter().map(one).collect()
+    }
+
+    /// Fitted from the numbers `x` with the effect at `shrink` times the sizes `start`.
+    fn fitted(&self, x: &[f64], card: &Card, start: &[(usize, f64)], shrink: f64) -> FitPoint {
+        let own: Vec<usize> = span(card).collect();
+        let mut x = x.to_vec();
+        own.iter().for_each(|&k| x[k] = 0.0);
+        start.iter().for_each(|(k, value)| x[*k] = value * shrink);
+        fit::refit(self.problem, self.whitener, self.point, &own, &x)
+    }
+
+    /// The point's numbers, with the time constants that a delay is mistaken for shorter by it: a lag that was fitted
+    /// without its delay is too long by about that.
+    fn shortened(&self, card: &Card, delay: f64) -> Vec<f64> {
+        let mut x = self.point.x.clone();
+        let numbers = &self.problem.model.numbers;
+        let absorbing = card.absorbed_by.iter().flat_map(|number| place(*number));
+        absorbing.for_each(|k| x[k] = (x[k] - delay).max(0.3 * x[k]).max(numbers[k].low));
+        x
+    }
 }

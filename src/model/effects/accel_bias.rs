@@ -1,6 +1,6 @@
 //! An accelerometer that is off by a constant: f + b.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Role, Sensed};
 
 pub struct AccelBias;
 
@@ -15,11 +15,16 @@ impl Effect for AccelBias {
         sentence: "the accelerometer shows a push that is not there",
         kind: EffectKind::Sensor,
         parameters: &[bias("x"), bias("y"), bias("z")],
+        writes: &[Quantity::Accelerometer, Quantity::Integrated],
         channels: &[ResidualChannel::Force, ResidualChannel::Push],
+        role: Role::ConstantError,
         signature: "specific force is off by a constant in the body that the change of velocity does not know of",
         rivals: &["accel_scale", "imu_misalignment", "steady_wind", "vibration_rectification"],
-        manoeuvre: ("many attitudes, and the same leg both ways", &["circle", "roll-flip", "pitch-flip", "forward", "backward"]),
-        shown: None,
+        manoeuvre: (
+            "many attitudes, and the same leg both ways",
+            &["circle", "roll-flip", "pitch-flip", "forward", "backward"],
+        ),
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! An accelerometer that reads too much or too little: f (1 + scale).
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Sensed};
 
 pub struct AccelScale;
 
@@ -11,11 +11,12 @@ impl Effect for AccelScale {
         sentence: "the accelerometer tells more or less than the vehicle feels, by the same share",
         kind: EffectKind::Sensor,
         parameters: &[EffectParameter { name: "scale", unit: "1", low: -0.1, high: 0.1, typical: [0.005, 0.03] }],
+        writes: &[Quantity::Accelerometer, Quantity::Integrated],
         channels: &[ResidualChannel::Force, ResidualChannel::Push],
         signature: "specific force is off by a share that the change of velocity does not know of",
         rivals: &["mass_or_density", "accel_bias", "vibration_rectification"],
         manoeuvre: ("none to full thrust in many attitudes", &["punch", "chop", "ramp-up", "roll-flip"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,7 @@
-//! Thrust lost to air that comes from above: the rotors' angle of attack falls with v_z (momentum and blade-element theory).
+//! Thrust lost to air that comes from above: the rotors' angle of attack falls with v_z (momentum and blade-element
+//! theory).
 
-use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct AxialInflow;
@@ -12,11 +13,13 @@ impl Effect for AxialInflow {
         sentence: "in a climb the rotors push less, in a descent more, the faster they turn",
         kind: EffectKind::Thrust,
         parameters: &[EffectParameter { name: "k", unit: "1/s", low: 0.0, high: 4.0, typical: [0.1, 1.7] }],
+        writes: &[Quantity::SpecificForce],
+        reads: &[Quantity::ThrustCommand, Quantity::Velocity],
         channels: &[ResidualChannel::Force],
         signature: "vertical specific force falls with throttle times vertical speed",
         rivals: &["vertical_drag", "propwash", "body_lift"],
         manoeuvre: ("climbs and descents at different throttle", &["climb", "descent", "dive", "punch"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! A clock that runs fast or slow: t becomes (1 + skew) t.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Role};
 
 pub struct ClockSkew;
 
@@ -11,10 +11,15 @@ impl Effect for ClockSkew {
         sentence: "one recorder's clock drifts away from the other's over the flight",
         kind: EffectKind::Sensor,
         parameters: &[EffectParameter { name: "skew", unit: "1", low: -0.03, high: 0.03, typical: [1e-4, 0.016] }],
+        writes: &[Quantity::RateCommand, Quantity::ThrustCommand, Quantity::Integrated],
         channels: &[ResidualChannel::Rate, ResidualChannel::Turn],
+        role: Role::ClockFast,
         signature: "the shift between gyro and attitude grows over the log",
         rivals: &["stream_offset", "gyro_scale", "response_voltage"],
-        manoeuvre: ("the same fast doublets early and late in a long log", &["roll-doublets", "pitch-doublets", "yaw-doublets"]),
-        shown: None,
+        manoeuvre: (
+            "the same fast doublets early and late in a long log",
+            &["roll-doublets", "pitch-doublets", "yaw-doublets"],
+        ),
+        ..Card::BLANK
     };
 }

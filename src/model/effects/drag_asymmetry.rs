@@ -1,6 +1,6 @@
 //! Drag that differs between forward and backward: f_x -= k v_x^2.
 
-use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct DragAsymmetry;
@@ -12,11 +12,13 @@ impl Effect for DragAsymmetry {
         sentence: "at the same lean the vehicle is faster in one direction than in the other",
         kind: EffectKind::Drag,
         parameters: &[EffectParameter { name: "k", unit: "1/m", low: -0.02, high: 0.02, typical: [0.001, 0.008] }],
+        writes: &[Quantity::SpecificForce],
+        reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
         signature: "forward specific force has a part that is the same for flight forward and backward",
         rivals: &["body_lift", "steady_wind"],
         manoeuvre: ("fast passes forward and backward", &["forward", "backward"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! More thrust close to the ground: f_T is scaled by 1 + k (R / 4 h)^2 (Cheeseman and Bennett).
 
-use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct GroundEffect;
@@ -17,11 +17,11 @@ impl Effect for GroundEffect {
         kind: EffectKind::Thrust,
         // 0.6 to 5 % at 0.25 m.
         parameters: &[EffectParameter { name: "k", unit: "1", low: 0.0, high: 45.0, typical: [2.0, 18.0] }],
+        writes: &[Quantity::SpecificForce],
         channels: &[ResidualChannel::Force],
         signature: "vertical specific force grows with thrust over height squared below half a metre",
-        rivals: &[],
         manoeuvre: ("hovering a hand above the ground, and landings", &["low-hover"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

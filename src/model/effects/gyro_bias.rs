@@ -1,6 +1,6 @@
 //! A gyro that is off by a constant: w + b.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Role, Sensed};
 
 pub struct GyroBias;
 
@@ -15,11 +15,13 @@ impl Effect for GyroBias {
         sentence: "the gyro shows a slow turn that is not there",
         kind: EffectKind::Sensor,
         parameters: &[bias("x"), bias("y"), bias("z")],
+        writes: &[Quantity::Gyro, Quantity::Integrated],
         channels: &[ResidualChannel::Rate, ResidualChannel::Turn],
+        role: Role::ConstantError,
         signature: "the integrated gyro drifts away from the attitude at a constant rate",
         rivals: &["weak_motor"],
         manoeuvre: ("calm flight at low and at high throttle", &["ramp-up", "ramp-down", "forward"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

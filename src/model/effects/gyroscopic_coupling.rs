@@ -1,6 +1,6 @@
 //! Turning about two axes pushes the third: w_x' += k w_y w_z, w_y' -= k w_z w_x, less what the rate loop holds.
 
-use super::{Setpoint, Card, ResidualChannel, Effect, EffectKind, EffectParameter};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Setpoint};
 use crate::base::lane::Real;
 
 pub struct GyroscopicCoupling;
@@ -12,11 +12,12 @@ impl Effect for GyroscopicCoupling {
         sentence: "a turn about two axes at once drags in the third",
         kind: EffectKind::Timing,
         parameters: &[EffectParameter { name: "k", unit: "1", low: -1.0, high: 1.0, typical: [0.01, 0.05] }],
+        writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
         signature: "the rate of one axis follows the product of the two others",
         rivals: &["rate_cross_coupling"],
         manoeuvre: ("yaw spins with roll and pitch at the same time", &["rate-steps", "yaw-spin", "circle"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! An IMU away from the centre of mass feels its own turning: f += w' x r + w x (w x r).
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Sensed};
 use crate::model::attitude::cross;
 
 pub struct ImuLeverArm;
@@ -16,11 +16,14 @@ impl Effect for ImuLeverArm {
         sentence: "the flight controller sits away from the centre of mass and feels every turn as acceleration",
         kind: EffectKind::Sensor,
         parameters: &[arm("rx"), arm("ry"), arm("rz")],
+        writes: &[Quantity::Accelerometer, Quantity::Integrated],
+        reads: &[Quantity::BodyRates, Quantity::AngularAcceleration],
         channels: &[ResidualChannel::Force, ResidualChannel::Push],
-        signature: "specific force on all axes follows squares of body rates and angular acceleration, and does not move the vehicle",
+        signature: "specific force on all axes follows squares of body rates and angular acceleration, and does not \
+            move the vehicle",
         rivals: &["rate_thrust_coupling"],
         manoeuvre: ("flips, spins and sharp rate steps", &["roll-flip", "pitch-flip", "yaw-spin", "rate-steps"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

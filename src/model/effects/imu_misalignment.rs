@@ -1,6 +1,6 @@
 //! An IMU that is mounted askew: rates and force x become x + r x x, r the small rotation from the body to the sensor.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Sensed};
 use crate::model::attitude::cross;
 
 pub struct ImuMisalignment;
@@ -16,11 +16,16 @@ impl Effect for ImuMisalignment {
         sentence: "the flight controller is not mounted level or straight, so that thrust seems to push sideways",
         kind: EffectKind::Sensor,
         parameters: &[angle("rx"), angle("ry"), angle("rz")],
+        writes: &[Quantity::Gyro, Quantity::Accelerometer, Quantity::Integrated],
         channels: &[ResidualChannel::Rate, ResidualChannel::Force, ResidualChannel::Turn, ResidualChannel::Push],
-        signature: "horizontal specific force follows the thrust and off-axis gyro the rates, and neither moves the vehicle",
+        signature: "horizontal specific force follows the thrust and off-axis gyro the rates, and neither moves the \
+            vehicle",
         rivals: &["rate_cross_coupling", "accel_bias", "velocity_lag"],
-        manoeuvre: ("throttle ramps and flips on one axis at a time", &["ramp-up", "punch", "roll-flip", "pitch-flip", "yaw-spin"]),
-        shown: None,
+        manoeuvre: (
+            "throttle ramps and flips on one axis at a time",
+            &["ramp-up", "punch", "roll-flip", "pitch-flip", "yaw-spin"],
+        ),
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Thrust given up for turning: f_T is scaled by 1 - k times the sum of |command - response| over the axes.
 
-use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct MixerThrustLoss;
@@ -12,11 +12,13 @@ impl Effect for MixerThrustLoss {
         sentence: "the vehicle drops a little whenever it is jerked around",
         kind: EffectKind::Thrust,
         parameters: &[EffectParameter { name: "k", unit: "1", low: 0.0, high: 0.25, typical: [0.02, 0.1] }],
+        writes: &[Quantity::SpecificForce],
+        reads: &[Quantity::RateError],
         channels: &[ResidualChannel::Force],
         signature: "vertical specific force dips while the rates are behind their commands",
         rivals: &["rate_thrust_coupling"],
         manoeuvre: ("flips and sharp steps at one throttle", &["roll-flip", "pitch-flip", "rate-steps"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,7 @@
-//! Open-circuit voltage as an S over the charge instead of a line: V += k P3(2 c - 1), P3 the third Legendre polynomial.
+//! Open-circuit voltage as an S over the charge instead of a line: V += k P3(2 c - 1), P3 the third
+//! Legendre polynomial.
 
-use super::{Card, BatteryLoad, ResidualChannel, Effect, EffectKind, EffectParameter};
+use super::{BatteryLoad, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct OcvCurve;
@@ -12,11 +13,12 @@ impl Effect for OcvCurve {
         sentence: "the voltage falls fast at first, then hardly, then fast again at the end of the pack",
         kind: EffectKind::Battery,
         parameters: &[EffectParameter { name: "k", unit: "V", low: -2.0, high: 2.0, typical: [0.2, 0.8] }],
+        writes: &[Quantity::Voltage],
         channels: &[ResidualChannel::Voltage],
         signature: "the voltage without load leaves the line as a cubic over the pack",
         rivals: &["voltage_sag"],
         manoeuvre: ("one whole pack from full to empty", &["circle", "forward", "backward"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,7 @@
-//! Thrust lost in the own wake: f_T is scaled by 1 - k g(-v_z / v_i), most where the descent is 1.2 times the induced velocity v_i.
+//! Thrust lost in the own wake: f_T is scaled by 1 - k g(-v_z / v_i), most where the descent is 1.2 times the
+//! induced velocity v_i.
 
-use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct Propwash;
@@ -19,11 +20,14 @@ impl Effect for Propwash {
         sentence: "sinking into its own wake the vehicle drops faster and shakes",
         kind: EffectKind::Thrust,
         parameters: &[EffectParameter { name: "k", unit: "1", low: 0.0, high: 0.8, typical: [0.08, 0.33] }],
+        writes: &[Quantity::SpecificForce],
+        reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
+        nonlinear: true,
         signature: "vertical specific force drops, and its scatter grows, in descents near the induced velocity only",
         rivals: &["axial_inflow"],
         manoeuvre: ("vertical and slanted descents at several speeds", &["descent", "dive", "chop"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Rolling pitches, and pitching rolls: w_x += k_xy w_y, w_y += k_yx w_x.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, BodyRates};
+use super::{BodyRates, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct RateCrossCoupling;
@@ -16,11 +16,15 @@ impl Effect for RateCrossCoupling {
         sentence: "a pure roll also pitches a little, or a pure pitch rolls",
         kind: EffectKind::Timing,
         parameters: &[share("kxy"), share("kyx")],
+        writes: &[Quantity::BodyRates],
         channels: &[ResidualChannel::Rate],
         signature: "the off-axis rate follows the other axis in proportion, in gyro and attitude alike",
         rivals: &["imu_misalignment", "gyroscopic_coupling"],
-        manoeuvre: ("doublets and flips on one axis at a time", &["roll-doublets", "pitch-doublets", "roll-flip", "pitch-flip"]),
-        shown: None,
+        manoeuvre: (
+            "doublets and flips on one axis at a time",
+            &["roll-doublets", "pitch-doublets", "roll-flip", "pitch-flip"],
+        ),
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Pure delay of the rate commands: a(t) becomes a(t - d).
 
-use super::{Card, ResidualChannel, Effect, EffectKind, CommandDelay, EffectParameter};
+use super::{Card, CommandDelay, CompactNumber, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct RateDelay;
@@ -12,11 +12,16 @@ impl Effect for RateDelay {
         sentence: "the vehicle starts to turn later than its sticks say, on all axes",
         kind: EffectKind::Timing,
         parameters: &[EffectParameter { name: "delay", unit: "s", low: 0.0, high: 0.12, typical: [0.002, 0.05] }],
+        writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
+        absorbed_by: &[CompactNumber::RollTime, CompactNumber::PitchTime, CompactNumber::YawTime],
         signature: "the gyro lags the simulated rate by the same time at every frequency",
         rivals: &["rate_second_order", "stream_offset", "command_dropout", "rate_slew_limit", "yaw_delay"],
-        manoeuvre: ("sharp steps and fast stick doublets on every axis", &["rate-steps", "roll-doublets", "pitch-doublets", "yaw-doublets"]),
-        shown: None,
+        manoeuvre: (
+            "sharp steps and fast stick doublets on every axis",
+            &["rate-steps", "roll-doublets", "pitch-doublets", "yaw-doublets"],
+        ),
+        ..Card::BLANK
     };
 
     #[inline(always)]

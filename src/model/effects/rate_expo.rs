@@ -1,6 +1,6 @@
 //! Curved stick response: a becomes (1 - e) a + e a^3.
 
-use super::{Setpoint, Card, ResidualChannel, Effect, EffectKind, EffectParameter};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Setpoint};
 use crate::base::lane::Real;
 
 pub struct RateExpo;
@@ -12,11 +12,12 @@ impl Effect for RateExpo {
         sentence: "half a stick gives less than half of the full rate, though full stick gives all of it",
         kind: EffectKind::Timing,
         parameters: &[EffectParameter { name: "e", unit: "1", low: -0.5, high: 1.0, typical: [0.05, 0.5] }],
+        writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
         signature: "the settled rate is a curve of the stick, the same at every speed of the stick",
         rivals: &["rate_slew_limit", "gyro_scale"],
         manoeuvre: ("steps of several sizes, held until the rate settles", &["roll-steps", "pitch-steps", "yaw-steps"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Largest angular acceleration: |dw/dt| <= alpha_max, in yaw 30 % of that of roll and pitch.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, Actuator, EffectParameter};
+use super::{Actuator, Card, Effect, EffectKind, EffectParameter, Quantity, RateResponse, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct RateSlewLimit;
@@ -15,12 +15,17 @@ impl Effect for RateSlewLimit {
         sentence: "large stick steps take longer than small ones, because the motors cannot turn the vehicle faster up",
         kind: EffectKind::Timing,
         // One over the limit, so that none is 0.
-        parameters: &[EffectParameter { name: "slew", unit: "s2/rad", low: 0.0, high: 0.05, typical: [1.0 / 600.0, 1.0 / 100.0] }],
+        parameters: &[
+            EffectParameter { name: "slew", unit: "s2/rad", low: 0.0, high: 0.05, typical: [1.0 / 600.0, 1.0 / 100.0] },
+        ],
+        writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
+        response: RateResponse::Limited,
         signature: "the gyro falls behind after large steps only, along a straight line",
         rivals: &["rate_delay", "rate_second_order", "rate_expo"],
         manoeuvre: ("steps of several sizes on every axis", &["rate-steps", "roll-steps", "pitch-steps", "yaw-steps"]),
         shown: Some(|k, _| vec![("limit", 1.0 / k[0].max(1e-9), "rad/s2")]),
+        ..Card::BLANK
     };
 
     #[inline(always)]

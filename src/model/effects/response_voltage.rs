@@ -1,6 +1,6 @@
 //! Response that slows with the battery: tau becomes tau (1 + k (V_full - V)) on the rate axes.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, Actuator, EffectParameter};
+use super::{Actuator, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct ResponseVoltage;
@@ -12,11 +12,15 @@ impl Effect for ResponseVoltage {
         sentence: "the vehicle feels lazy on all axes late in the pack",
         kind: EffectKind::Timing,
         parameters: &[EffectParameter { name: "k", unit: "1/V", low: 0.0, high: 0.5, typical: [0.05, 0.2] }],
+        writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
         signature: "the gyro lags the simulated rate more the lower the voltage is",
         rivals: &["clock_skew"],
-        manoeuvre: ("the same steps with a full and with an empty battery", &["rate-steps", "roll-doublets", "pitch-doublets"]),
-        shown: None,
+        manoeuvre: (
+            "the same steps with a full and with an empty battery",
+            &["rate-steps", "roll-doublets", "pitch-doublets"],
+        ),
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Air that moves over the ground: v_air = v - w.
 
-use super::{RelativeWind, Card, ResidualChannel, Effect, EffectKind, EffectParameter};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, RelativeWind, ResidualChannel, Role};
 use crate::base::lane::Real;
 
 pub struct SteadyWind;
@@ -16,11 +16,13 @@ impl Effect for SteadyWind {
         sentence: "the vehicle drifts to one side of the field, whichever way it points",
         kind: EffectKind::Drag,
         parameters: &[speed("wx"), speed("wy")],
+        writes: &[Quantity::SpecificForce],
         channels: &[ResidualChannel::Force],
+        role: Role::UniformWind,
         signature: "horizontal specific force is constant in the world and turns with the heading in the body",
         rivals: &["rotor_drag", "drag_asymmetry", "accel_bias"],
         manoeuvre: ("the same leg both ways, and circles", &["forward", "backward", "left", "right", "circle"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

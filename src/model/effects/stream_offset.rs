@@ -1,6 +1,6 @@
 //! The gyro is stamped late: a sample of time t carries the time t + offset.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter};
+use super::{Card, CompactNumber, Effect, EffectKind, EffectParameter, Evidence, Quantity, ResidualChannel, Role, Twin};
 
 pub struct StreamOffset;
 
@@ -11,10 +11,14 @@ impl Effect for StreamOffset {
         sentence: "in the log the gyro lags everything else by some milliseconds, though in flight it does not",
         kind: EffectKind::Sensor,
         parameters: &[EffectParameter { name: "offset", unit: "s", low: -0.05, high: 0.05, typical: [0.001, 0.015] }],
+        writes: &[Quantity::GyroTime],
         channels: &[ResidualChannel::Rate, ResidualChannel::Turn],
+        role: Role::GyroLate,
+        absorbed_by: &[CompactNumber::RollTime, CompactNumber::PitchTime, CompactNumber::YawTime],
+        twin: Some(Twin { effect: "rate_delay", told_by: Evidence::OdometryClock }),
         signature: "the gyro is shifted against the attitude, not only against the commands",
         rivals: &["rate_delay", "clock_skew"],
         manoeuvre: ("fast stick doublets on every axis", &["roll-doublets", "pitch-doublets", "yaw-doublets"]),
-        shown: None,
+        ..Card::BLANK
     };
 }

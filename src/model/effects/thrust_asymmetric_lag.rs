@@ -1,6 +1,6 @@
 //! Rotors that slow down later than they speed up: tau of falling thrust is that of rising thrust plus a difference.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, Actuator, EffectParameter};
+use super::{Actuator, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct ThrustAsymmetricLag;
@@ -11,12 +11,16 @@ impl Effect for ThrustAsymmetricLag {
         name: "spin-down slower than spin-up",
         sentence: "thrust dies away more slowly after a throttle cut than it builds up after a punch",
         kind: EffectKind::Timing,
-        parameters: &[EffectParameter { name: "difference", unit: "s", low: -0.02, high: 0.08, typical: [0.004, 0.025] }],
+        parameters: &[
+            EffectParameter { name: "difference", unit: "s", low: -0.02, high: 0.08, typical: [0.004, 0.025] },
+        ],
+        writes: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Force],
         signature: "vertical specific force lags after throttle cuts, not after punches",
         rivals: &["thrust_delay", "throttle_offset"],
         manoeuvre: ("throttle steps up and down of the same size, and cuts", &["throttle-steps", "punch", "chop"]),
         shown: Some(|k, [_, tau]| vec![("tau_up", tau, "s"), ("tau_down", tau + k[0], "s")]),
+        ..Card::BLANK
     };
 
     #[inline(always)]

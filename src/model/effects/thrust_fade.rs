@@ -1,6 +1,6 @@
 //! Thrust that fades over a flight as the motors warm: f_T is scaled by 1 - k t / 300 s.
 
-use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
+use super::{AerodynamicForces, Card, CompactNumber, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct ThrustFade;
@@ -15,11 +15,16 @@ impl Effect for ThrustFade {
         sentence: "the same throttle lifts less at the end of a flight, whatever the voltage",
         kind: EffectKind::Thrust,
         parameters: &[EffectParameter { name: "k", unit: "1", low: 0.0, high: 0.25, typical: [0.02, 0.08] }],
+        writes: &[Quantity::SpecificForce],
         channels: &[ResidualChannel::Force],
+        absorbed_by: &[CompactNumber::Thrust],
         signature: "vertical specific force falls in proportion to the time in the air",
         rivals: &["voltage_compensation"],
-        manoeuvre: ("the same punches at the start and at the end, on two packs", &["punch", "throttle-steps", "climb"]),
-        shown: None,
+        manoeuvre: (
+            "the same punches at the start and at the end, on two packs",
+            &["punch", "throttle-steps", "climb"],
+        ),
+        ..Card::BLANK
     };
 
     #[inline(always)]

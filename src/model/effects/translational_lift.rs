@@ -1,6 +1,6 @@
 //! Thrust gained from fresh wind: f_T += k v_h^2 (momentum theory).
 
-use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct TranslationalLift;
@@ -12,11 +12,13 @@ impl Effect for TranslationalLift {
         sentence: "in fast level flight the vehicle carries itself on less throttle",
         kind: EffectKind::Thrust,
         parameters: &[EffectParameter { name: "k", unit: "1/m", low: 0.0, high: 0.08, typical: [0.003, 0.03] }],
+        writes: &[Quantity::SpecificForce],
+        reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
         signature: "vertical specific force grows with the square of the speed across the rotors",
         rivals: &["body_lift"],
         manoeuvre: ("level passes from slow to fast", &["forward", "backward", "left", "right"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

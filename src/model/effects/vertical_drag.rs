@@ -1,6 +1,6 @@
 //! Drag along the thrust in proportion to the speed: f_z -= k v_z.
 
-use super::{Card, ResidualChannel, Effect, AerodynamicForces, EffectKind, EffectParameter};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct VerticalDrag;
@@ -12,11 +12,13 @@ impl Effect for VerticalDrag {
         sentence: "climbs and descents are braked, whatever the throttle",
         kind: EffectKind::Drag,
         parameters: &[EffectParameter { name: "k", unit: "1/s", low: 0.0, high: 0.9, typical: [0.05, 0.3] }],
+        writes: &[Quantity::SpecificForce],
+        reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
         signature: "vertical specific force falls with vertical speed, at any throttle",
         rivals: &["axial_inflow", "body_lift"],
         manoeuvre: ("climbs and descents at different throttle", &["climb", "descent", "dive", "punch"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Vibration that an accelerometer takes for a push: f += k s^2.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, Sensed};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Sensed};
 
 pub struct VibrationRectification;
 
@@ -15,11 +15,14 @@ impl Effect for VibrationRectification {
         sentence: "the shaking of the motors makes the accelerometer show a push that grows with the throttle",
         kind: EffectKind::Sensor,
         parameters: &[push("x"), push("y"), push("z")],
+        writes: &[Quantity::Accelerometer, Quantity::Integrated],
+        reads: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Force, ResidualChannel::Push],
-        signature: "specific force is off by the square of the throttle, and the change of velocity does not know of it",
+        signature: "specific force is off by the square of the throttle, and the change of velocity does not know of \
+            it",
         rivals: &["throttle_offset", "accel_scale", "accel_bias"],
         manoeuvre: ("throttle ramps and punches", &["ramp-up", "ramp-down", "punch", "chop"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

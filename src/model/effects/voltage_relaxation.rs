@@ -1,6 +1,6 @@
 //! Voltage lost to slow polarisation: V1' = (v s^2 - V1) / tau.
 
-use super::{Card, BatteryLoad, ResidualChannel, Effect, EffectKind, EffectParameter};
+use super::{BatteryLoad, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct VoltageRelaxation;
@@ -15,11 +15,14 @@ impl Effect for VoltageRelaxation {
             EffectParameter { name: "v_full", unit: "V", low: 0.0, high: 4.0, typical: [0.2, 1.5] },
             EffectParameter { name: "tau", unit: "s", low: 0.0, high: 90.0, typical: [1.0, 30.0] },
         ],
+        shape: Some(1),
+        writes: &[Quantity::Voltage],
+        reads: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Voltage],
         signature: "the voltage follows the load of the past seconds and recovers slowly at rest",
         rivals: &["voltage_sag"],
         manoeuvre: ("a long pull, then rest", &["punch", "chop", "climb", "descent"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

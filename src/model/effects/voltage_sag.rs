@@ -1,6 +1,6 @@
 //! Voltage lost to the battery's inner resistance at once: V = V_oc - v s^2, v at full throttle.
 
-use super::{Card, BatteryLoad, ResidualChannel, Effect, EffectKind, EffectParameter};
+use super::{BatteryLoad, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct VoltageSag;
@@ -12,11 +12,13 @@ impl Effect for VoltageSag {
         sentence: "the voltage drops the moment the throttle opens and is back when it closes",
         kind: EffectKind::Battery,
         parameters: &[EffectParameter { name: "v_full", unit: "V", low: 0.0, high: 8.0, typical: [0.8, 3.0] }],
+        writes: &[Quantity::Voltage],
+        reads: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Voltage],
         signature: "the voltage falls with the square of the throttle, at once",
         rivals: &["voltage_relaxation", "ocv_curve"],
         manoeuvre: ("punches with rest between them", &["punch", "chop", "throttle-steps"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

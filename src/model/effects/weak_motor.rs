@@ -1,6 +1,6 @@
 //! A motor or propeller that gives less than the others: w += b s.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, EffectParameter, BodyRates};
+use super::{BodyRates, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct WeakMotor;
@@ -16,6 +16,8 @@ impl Effect for WeakMotor {
         sentence: "the vehicle leans and turns by itself, the more the higher the throttle",
         kind: EffectKind::Timing,
         parameters: &[rate("bx"), rate("by"), rate("bz")],
+        writes: &[Quantity::BodyRates],
+        reads: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Rate],
         signature: "the mean rate without command grows in proportion to the throttle",
         rivals: &["gyro_bias"],
@@ -24,6 +26,7 @@ impl Effect for WeakMotor {
             let b = (k[0].abs() + k[1].abs() + k[2].abs()) / 3.0;
             vec![("bx", k[0], "rad/s"), ("by", k[1], "rad/s"), ("bz", k[2], "rad/s"), ("b", b, "rad/s")]
         }),
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,6 +1,7 @@
-//! Yaw that fades where the motors saturate: the yaw command is scaled by 1 - k sat(s), sat rising from 0 at s = 0.8 to 1 at 1.
+//! Yaw that fades where the motors saturate: the yaw command is scaled by 1 - k sat(s), sat rising from 0 at s = 0.8
+//! to 1 at 1.
 
-use super::{Setpoint, Card, ResidualChannel, Effect, EffectKind, EffectParameter};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Setpoint};
 use crate::base::lane::Real;
 
 pub struct YawAuthorityLoss;
@@ -12,11 +13,12 @@ impl Effect for YawAuthorityLoss {
         sentence: "near full throttle the vehicle yaws less than asked",
         kind: EffectKind::Timing,
         parameters: &[EffectParameter { name: "k", unit: "1", low: 0.0, high: 1.0, typical: [0.1, 0.6] }],
+        writes: &[Quantity::RateCommand],
+        reads: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Rate],
         signature: "the yaw rate falls short only where throttle and yaw command are both large",
-        rivals: &[],
         manoeuvre: ("yaw steps at full throttle", &["punch-turns"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

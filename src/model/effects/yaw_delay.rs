@@ -1,7 +1,8 @@
-//! Pure delay of the yaw command beyond that of roll and pitch, of either sign: yaw goes through other filters and is made by torque, not by thrust.
+//! Pure delay of the yaw command beyond that of roll and pitch, of either sign: yaw goes through other filters and is
+//! made by torque, not by thrust.
 //! The catalogue had one delay for all axes; IndiFlight's flights ask for two.
 
-use super::{Card, ResidualChannel, Effect, EffectKind, CommandDelay, EffectParameter};
+use super::{Card, CommandDelay, CompactNumber, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct YawDelay;
@@ -13,11 +14,13 @@ impl Effect for YawDelay {
         sentence: "yaw starts to turn later, or earlier, than roll and pitch do",
         kind: EffectKind::Timing,
         parameters: &[EffectParameter { name: "extra", unit: "s", low: -0.06, high: 0.06, typical: [0.004, 0.03] }],
+        writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
+        absorbed_by: &[CompactNumber::YawTime],
         signature: "the gyro's yaw lags the simulated rate by another time than its roll and pitch",
         rivals: &["rate_delay"],
         manoeuvre: ("sharp yaw steps and doublets", &["yaw-steps", "yaw-doublets", "yaw-spin"]),
-        shown: None,
+        ..Card::BLANK
     };
 
     #[inline(always)]

@@ -1,0 +1,20 @@
+//! The size of an effect: whether anybody would notice it, and whether it ended where the search does.
+
+use super::numbers::span;
+use super::problem::Problem;
+use crate::model::effects::Card;
+
+/// Whether a number of an effect ends at the bound of its range: then it stands in for something else.
+pub fn is_bounded(problem: &Problem, card: &Card, x: &[f64]) -> bool {
+    let at_end = |k: usize| {
+        let n = &problem.model.numbers[k];
+        x[k] != 0.0 && (x[k] <= n.low || x[k] >= n.high)
+    };
+    span(card).any(at_end)
+}
+
+/// Whether the size of an effect is one that anybody would notice: half the smallest of its typical ones.
+pub fn is_material(card: &Card, x: &[f64]) -> bool {
+    let from = span(card).start;
+    card.sizes().map(|(i, p)| (x[from + i] / p.typical[0]).powi(2)).sum::<f64>().sqrt() >= 0.5
+}
