@@ -11,14 +11,19 @@
 pub mod actuator_response;
 pub mod adequacy;
 pub mod candidates;
+pub mod cause;
 pub mod disambiguate;
 pub mod drift;
 pub mod extend;
 pub mod figures;
 pub mod finding;
+pub mod findings;
 pub mod fit;
+pub mod fitted;
+pub mod folds;
 pub mod gain;
 pub mod horizon;
+pub mod impact;
 pub mod judge;
 pub mod kinematics;
 pub mod model;
@@ -31,8 +36,10 @@ pub mod problem;
 pub mod random;
 pub mod rank;
 pub mod record;
+pub mod replication;
 pub mod score;
 pub mod select;
+pub mod shown;
 pub mod size;
 pub mod skew;
 pub mod structure;
@@ -43,16 +50,14 @@ use crate::base::stats::mean;
 use crate::insight::Watch;
 use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
-use crate::model::effects::{self, ResidualChannel, Role};
 use crate::model::vehicle::Vehicle;
 use finding::{Diagnosis, Finding, Residual, Status, Verdict};
-use judge::{Judge, Judged};
+use findings::Found;
+use fitted::Fitted;
 use model::Model;
-use numbers::span;
-use predict::{PUSH, TURN};
 use problem::Problem;
 use record::FlightRecord;
-use select::{Added, Selection};
+use select::Selection;
 use std::collections::BTreeMap;
 use structure::NAMES;
 
@@ -93,38 +98,8 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     watch("judging", 0.85);
     let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
     let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
-    let judge = Judge::new(&problem, &selection);
-    let mut judged: Vec<Judged> = selection.added.iter().map(|a| judge.judge(a)).filter(|j| j.material).collect();
-    judged.extend(biases(&judge));
-    let mut findings: Vec<Finding> = judged.iter().map(|j| j.finding.clone()).collect();
-    if let (Some(lost), Some(finding)) = (lost, findings.iter_mut().find(|f| f.effect == "command_dropout")) {
-        finding.counted(&lost);
-    }
-    let placed = structure.iter().any(|s| s.along == Some(structure::PLACE));
-    let force_structure = structure.iter().filter(|s| s.channel.starts_with("specific force")).map(|s| s.structure_rms);
-    if !placed {
-        findings.extend(random::gusts(&problem, &selection, force_structure.fold(0.0, f64::max)));
-    }
-    let (drift, cause) = drift::find(&judge);
-    findings.extend(cause);
-    let unexplained = adequacy::unexplained(&structure, &findings, &selection);
-    let all = findings.clone();
-    for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected) {
-        let bounded = judged.iter().any(|j| j.bounded && j.finding.effect == finding.effect);
-        if let Some(why) = adequacy::doubt(finding, bounded, &all, &structure, &unexplained) {
-            (finding.status, finding.why) = (Status::Suspected, Some(why));
-        }
-    }
-    for finding in findings.iter_mut().filter(|f| placed && f.effect == "steady_wind") {
-        finding.status = Status::Suspected;
-        finding.why = Some("the wind is not the same everywhere".into());
-    }
-    // A move of the base explains nothing where its channel still has structure.
-    let open = unexplained.iter().any(|s| s.channel == "specific force z");
-    for finding in findings.iter_mut().filter(|f| open && f.explained.contains_key(drift::MOVES)) {
-        finding.status = Status::Suspected;
-        finding.why = Some("structure remains in specific force z".into());
-    }
+    let fitted = Fitted::new(&problem, &selection);
+    let Found { mut findings, judged, drift, unexplained } = findings::find(&fitted, lost, &structure);
     watch("measuring the gain", 0.9);
     // What is only suspected is no part of the extended vehicle.
     let suspected: Vec<&str> = findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
@@ -145,7 +120,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         (true, false) => Verdict::Effects,
     };
     let (detectable, not_detectable) = plan::judge(&problem, &selection.reach);
-    let extended = extend::vehicle(&Judge::new(&problem, kept), &findings);
+    let extended = extend::vehicle(&Fitted::new(&problem, kept), &findings);
     let diagnosis = Diagnosis {
         verdict,
         logs: problem.records.iter().map(|r| r.name.clone()).collect(),
@@ -169,23 +144,6 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
 /// By impact; what is only suspected comes last.
 fn rank(finding: &Finding) -> f64 {
     finding.impact + if finding.status == Status::Suspected { 0.0 } else { 1e6 }
-}
-
-/// Constant errors of the IMU, which every fit allows for.
-fn biases(judge: &Judge) -> Vec<Judged> {
-    // Larger than what any such sensor has, by a share of the smallest size that is one.
-    const SHARE: f64 = 0.8;
-    let point = &judge.selection.point;
-    let seen = |first: usize| !judge.problem.rows[first].is_empty();
-    let mut out = Vec::new();
-    for card in effects::acting(Role::ConstantError) {
-        let channel = if card.channels.contains(&ResidualChannel::Turn) { TURN } else { PUSH };
-        let size = span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
-        if seen(channel) && size > SHARE * card.parameters[0].typical[0] {
-            out.push(judge.judge(&Added { card, ties: Vec::new() }));
-        }
-    }
-    out
 }
 
 fn residuals(problem: &Problem, selection: &Selection) -> BTreeMap<&'static str, Residual> {

@@ -11,9 +11,7 @@ mod stages;
 mod values;
 
 use crate::base::lane::Real;
-pub use card::{
-    Card, CompactNumber, EffectKind, EffectParameter, Evidence, RateResponse, ResidualChannel, Role, Shown, Twin,
-};
+pub use card::{Card, CompactNumber, EffectKind, EffectParameter, Evidence, RateResponse, ResidualChannel, Role, Twin};
 pub use quantity::{Quantities, Quantity};
 pub use stages::{
     Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, RelativeWind, Sensed, Setpoint, ThrustInput,

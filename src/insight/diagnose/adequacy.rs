@@ -5,7 +5,7 @@ use super::oscillation;
 use super::select::Selection;
 use super::structure::{NAMES, Structure};
 use crate::base::stats::mean;
-use crate::model::effects::{self, EffectKind};
+use crate::model::effects::{self, EffectKind, Role};
 
 /// Structure that nobody needs to care about, as a root mean square: rad/s, m/s2, V.
 const IDLE: [f64; 3] = [0.025, 0.08, 0.02];
@@ -27,7 +27,7 @@ const ABOUT: f64 = 0.05;
 
 /// Channels in which structure is left that matters, beside the noise and beside what the findings explain.
 pub fn unexplained(structure: &[Structure], findings: &[Finding], selection: &Selection) -> Vec<Structure> {
-    let gusts = findings.iter().any(|f| f.effect == "gusts");
+    let gusts = findings.iter().any(|f| f.has(Role::RandomForce));
     let one = |s: &&Structure| {
         let Some(c) = NAMES.iter().position(|(name, _)| *name == s.channel) else { return false };
         let idle = IDLE[if c < 3 {

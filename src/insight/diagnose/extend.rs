@@ -1,7 +1,7 @@
 //! The vehicle that a diagnosis describes: the compact model's numbers as fitted with its effects, the effects, and how well they are known.
 
 use super::finding::{Finding, Status};
-use super::judge::Judge;
+use super::fitted::Fitted;
 use super::numbers::span;
 use crate::model::effects::{self, MODEL};
 use crate::model::vehicle::Vehicle;
@@ -10,15 +10,15 @@ use std::collections::BTreeMap;
 
 /// The base vehicle with every named effect of the simulator. Effects of sensors and of chance are no part of a vehicle; what a change of
 /// the compact model's numbers already holds is not added a second time.
-pub fn vehicle(judge: &Judge, findings: &[Finding]) -> Vehicle {
-    let model = &judge.problem.model;
-    let point = &judge.selection.point;
+pub fn vehicle(fitted: &Fitted, findings: &[Finding]) -> Vehicle {
+    let model = &fitted.problem.model;
+    let point = &fitted.selection.point;
     let mut vehicle = model.vehicle_at(&point.x);
     let mut sizes: BTreeMap<String, BTreeMap<String, f64>> = vehicle.effects.sizes.clone();
     let mut uncertain: Vec<(String, usize)> = Vec::new();
     for finding in findings.iter().filter(|f| f.status != Status::Suspected) {
         let Some(card) = MODEL.iter().find(|card| card.id == finding.effect) else { continue };
-        let Some(added) = judge.selection.added.iter().find(|a| a.card.id == card.id) else { continue };
+        let Some(added) = fitted.selection.added.iter().find(|a| a.card.id == card.id) else { continue };
         for (p, k) in added.card.parameters.iter().zip(span(card)) {
             sizes.entry(card.id.into()).or_default().insert(p.name.into(), point.x[k]);
             if let Some(place) = point.free.iter().position(|f| *f == k) {
@@ -27,10 +27,10 @@ pub fn vehicle(judge: &Judge, findings: &[Finding]) -> Vehicle {
         }
     }
     // A number at its bound has no spread.
-    uncertain.retain(|(_, i)| judge.covariance[(*i, *i)] > 0.0);
-    let row = |i: usize| uncertain.iter().map(|(_, j)| judge.covariance[(i, *j)]).collect::<Vec<f64>>();
+    uncertain.retain(|(_, i)| fitted.covariance[(*i, *i)] > 0.0);
+    let row = |i: usize| uncertain.iter().map(|(_, j)| fitted.covariance[(i, *j)]).collect::<Vec<f64>>();
     let covariance = uncertain.iter().map(|(_, i)| row(*i)).collect();
-    let logs: Vec<&str> = judge.problem.records.iter().map(|r| r.name.as_str()).collect();
+    let logs: Vec<&str> = fitted.problem.records.iter().map(|r| r.name.as_str()).collect();
     let source = format!("racer {} diagnose {}", env!("CARGO_PKG_VERSION"), logs.join(" "));
     if !sizes.is_empty() {
         let uncertain = uncertain.iter().map(|(key, _)| key.clone()).collect();

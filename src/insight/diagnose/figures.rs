@@ -8,6 +8,7 @@ use super::Diagnosed;
 use super::predict::CHANNELS;
 use super::structure::{NAMES, Structure};
 use crate::base::stats::mean;
+use crate::model::effects::Role;
 use profile::Profile;
 use spectrum::Spectra;
 use windows::{Errors, Window};
@@ -40,8 +41,7 @@ pub fn channels(diagnosed: &Diagnosed) -> Vec<ChannelFigure> {
     let shown = |c: usize, fell: f64| {
         let name = NAMES[c].0;
         // Constant errors of the IMU are part of the fit before as well as after: there is nothing to see in them.
-        let constant = |effect: &str| matches!(effect, "gyro_bias" | "accel_bias");
-        let findings = diagnosed.diagnosis.findings.iter().filter(|f| !constant(f.effect));
+        let findings = diagnosed.diagnosis.findings.iter().filter(|f| !f.has(Role::ConstantError));
         let explained = findings.filter_map(|f| f.explained.get(name)).any(|share| *share > SHOWN);
         explained || fell > FELL || unexplained(diagnosed, name)
     };

@@ -2,6 +2,7 @@
 
 use super::horizon::Horizon;
 use super::structure::Structure;
+use crate::model::effects::{self, Card, Role};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -227,19 +228,43 @@ impl Diagnosis {
 }
 
 impl Finding {
+    /// Named, of an effect that nothing more is known of yet.
+    pub fn of(card: &'static Card) -> Self {
+        let (manoeuvre, kinds) = card.manoeuvre;
+        Finding {
+            effect: card.id,
+            name: card.name,
+            status: Status::Named,
+            members: vec![card.id],
+            sentence: card.sentence,
+            channel: "",
+            parameters: BTreeMap::new(),
+            stretches: 0.0,
+            explained: BTreeMap::new(),
+            gain: BTreeMap::new(),
+            impact: 0.0,
+            rivals: effects::rivals(card),
+            manoeuvre,
+            kinds: kinds.to_vec(),
+            why: None,
+        }
+    }
+
+    /// Whether its effect acts on a log in this way.
+    pub fn has(&self, role: Role) -> bool {
+        effects::card(self.effect).is_some_and(|card| card.role == role)
+    }
+
+    /// It is no more than suspected.
+    pub fn suspect(&mut self, why: String) {
+        (self.status, self.why) = (Status::Suspected, Some(why));
+    }
+
     /// Shares of the channels that are worth a word, the largest first.
     pub fn mentioned(&self) -> Vec<(&'static str, f64)> {
         let mut shares: Vec<_> =
             self.explained.iter().map(|(c, s)| (*c, *s)).filter(|(_, s)| *s >= MENTIONED).collect();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
-    }
-
-    /// Lost commands, as counted.
-    pub(super) fn counted(&mut self, lost: &super::random::Lost) {
-        let [low, high] = lost.interval;
-        self.parameters.insert("probability".into(), Value { value: lost.share, low, high, unit: "1".into() });
-        self.stretches = lost.whole as f64;
-        (self.status, self.why, self.members) = (Status::Named, None, vec![self.effect]);
     }
 }

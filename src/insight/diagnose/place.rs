@@ -1,9 +1,9 @@
 //! Whether what is left of the horizontal force belongs to places in the world: a fan, the lee of a building. No signal of the vehicle tells that,
 //! because the same place pushes another way when the vehicle has turned.
 
+use super::folds::fold;
 use super::predict::FORCE;
 use super::problem::{ChannelValues, Problem};
-use super::structure::fold;
 use std::collections::HashMap;
 
 /// Side of a place, m, and the rows that a place has to have been seen in elsewhere in time.

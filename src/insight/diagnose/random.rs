@@ -1,14 +1,13 @@
 //! Effects of chance: they have no mean, or one that looks like another effect's, and show in the variance.
 
-use super::finding::{Finding, Status, Value};
+use super::finding::{Finding, Value};
 use super::predict::{FORCE, RATE};
 use super::problem::Problem;
 use super::select::Selection;
 use crate::base::stats::{NORMAL_95, mean, robust_sd};
 use crate::insight::estimate::robust::capped;
 use crate::model::dynamics::response::alpha;
-use crate::model::effects::{self, Card};
-use std::collections::BTreeMap;
+use crate::model::effects::{self, Card, Role};
 
 /// Stretches of flight that have to agree.
 const REPLICATED: f64 = 15.0;
@@ -107,7 +106,7 @@ pub fn are_lost(lost: &Lost, card: &Card) -> bool {
 
 /// Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both horizontal axes.
 pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Option<Finding> {
-    let card: &'static Card = effects::card("gusts")?;
+    let card: &'static Card = effects::acting(Role::RandomForce).next()?;
     let mut lags = [[0.0; 2]; 2];
     let mut agree = [0.0; 2];
     let mut blocks_all: Vec<[f64; 2]> = vec![[0.0; 2]; problem.blocks];
@@ -170,25 +169,12 @@ pub fn gusts(problem: &Problem, selection: &Selection, structure_rms: f64) -> Op
     let half = NORMAL_95 * 0.5 * sigma * spread(0) / near;
     let half_tau = NORMAL_95 * tau * tau / apart * (spread(0) / near).hypot(spread(1) / far);
     let value = |v: f64, h: f64, unit: &str| Value { value: v, low: v - h, high: v + h, unit: unit.into() };
-    let (manoeuvre, kinds) = card.manoeuvre;
+    let sizes = card.parameters.iter().zip([(sigma, half), (tau, half_tau)]);
     Some(Finding {
-        effect: card.id,
-        name: card.name,
-        status: Status::Named,
-        members: vec![card.id],
-        sentence: card.sentence,
         channel: "specific force x",
-        parameters: BTreeMap::from([
-            ("sigma".to_string(), value(sigma, half, "m/s2")),
-            ("tau".to_string(), value(tau, half_tau, "s")),
-        ]),
+        parameters: sizes.map(|(p, (v, h))| (p.name.to_string(), value(v, h, p.unit))).collect(),
         stretches,
-        explained: BTreeMap::new(),
-        gain: BTreeMap::new(),
         impact: sigma * (2.0 * tau.min(1.0) * 1.0).sqrt(),
-        rivals: card.rivals.to_vec(),
-        manoeuvre,
-        kinds: kinds.to_vec(),
-        why: None,
+        ..Finding::of(card)
     })
 }

@@ -1,6 +1,7 @@
 //! Is anything left? What of a residual an additive model of many signals predicts on stretches of time that it has not seen, with what that
 //! lines up with; and how much of it its own past predicts.
 
+use super::folds::{FOLDS, fold};
 use super::predict::{CHANNELS, FORCE, RATE, VOLTAGE};
 use super::problem::{ChannelValues, Predictions, Problem};
 use crate::base::stats::quantile;
@@ -12,11 +13,6 @@ use serde::Serialize;
 
 /// Levels that a signal is cut into.
 const BINS: usize = 8;
-/// Parts of the time, each predicted from the others.
-const FOLDS: u32 = 6;
-/// Stretches of time to a fold's piece, so that each fold holds early and late flight.
-const PIECE: u32 = 3;
-
 /// Residuals are capped at so many standard deviations.
 const CAP: f64 = 5.0;
 /// Values before a residual that may tell it.
@@ -65,11 +61,6 @@ pub const NAMES: [(&str, &str); CHANNELS] = [
     ("push z", "m/s"),
     ("voltage", "V"),
 ];
-
-/// The fold of a stretch of time.
-pub fn fold(block: u32) -> u32 {
-    block / PIECE % FOLDS
-}
 
 /// The residuals of channels of rates, forces and voltage, searched for structure.
 pub fn search(problem: &Problem, state: &Predictions, residual: &ChannelValues) -> Vec<Structure> {

@@ -1,0 +1,92 @@
+//! Everything that was found: the judged effects, gusts, and what moved against the base vehicle; and which of them what is
+//! left puts in doubt.
+
+use super::adequacy;
+use super::cause::MOVES;
+use super::drift;
+use super::finding::{Drift, Finding, Status, Value};
+use super::fitted::Fitted;
+use super::judge::{Judged, judge};
+use super::numbers::span;
+use super::predict::{PUSH, TURN};
+use super::random::{self, Lost};
+use super::select::Added;
+use super::structure::{PLACE, Structure};
+use crate::model::effects::{self, ResidualChannel, Role};
+
+/// What was found.
+pub struct Found {
+    pub findings: Vec<Finding>,
+    pub judged: Vec<Judged>,
+    pub drift: Vec<Drift>,
+    pub unexplained: Vec<Structure>,
+}
+
+/// Judges a selection that leaves `structure`, of flights that lose so many commands.
+pub fn find(fitted: &Fitted, lost: Option<Lost>, structure: &[Structure]) -> Found {
+    let added = fitted.selection.added.iter().map(|a| judge(fitted, a)).filter(|j| j.material);
+    let judged: Vec<Judged> = added.chain(constant_errors(fitted)).collect();
+    let mut findings: Vec<Finding> = judged.iter().map(|j| j.finding.clone()).collect();
+    if let Some(lost) = lost {
+        findings.iter_mut().filter(|f| f.has(Role::CommandsLost)).for_each(|f| count(f, &lost));
+    }
+    let placed = structure.iter().any(|s| s.along == Some(PLACE));
+    if !placed {
+        let forces = structure.iter().filter(|s| s.channel.starts_with("specific force")).map(|s| s.structure_rms);
+        findings.extend(random::gusts(fitted.problem, fitted.selection, forces.fold(0.0, f64::max)));
+    }
+    let (drift, cause) = drift::find(fitted);
+    findings.extend(cause);
+    let unexplained = adequacy::unexplained(structure, &findings, fitted.selection);
+    let mut found = Found { findings, judged, drift, unexplained };
+    found.doubt(structure, placed);
+    found
+}
+
+impl Found {
+    /// What is left makes findings no more than suspected.
+    fn doubt(&mut self, structure: &[Structure], placed: bool) {
+        let all = self.findings.clone();
+        for finding in self.findings.iter_mut().filter(|f| f.status != Status::Suspected) {
+            let bounded = self.judged.iter().any(|j| j.bounded && j.finding.effect == finding.effect);
+            if let Some(why) = adequacy::doubt(finding, bounded, &all, structure, &self.unexplained) {
+                finding.suspect(why);
+            }
+        }
+        for finding in self.findings.iter_mut().filter(|f| placed && f.has(Role::UniformWind)) {
+            finding.suspect("the wind is not the same everywhere".into());
+        }
+        // A move of the base explains nothing where its channel still has structure.
+        let open = self.unexplained.iter().any(|s| s.channel == "specific force z");
+        for finding in self.findings.iter_mut().filter(|f| open && f.explained.contains_key(MOVES)) {
+            finding.suspect("structure remains in specific force z".into());
+        }
+    }
+}
+
+/// Lost commands, as counted.
+fn count(finding: &mut Finding, lost: &Lost) {
+    let [low, high] = lost.interval;
+    let counted = effects::card(finding.effect).into_iter().flat_map(|card| card.parameters.first());
+    for p in counted {
+        finding.parameters.insert(p.name.into(), Value { value: lost.share, low, high, unit: p.unit.into() });
+    }
+    finding.stretches = lost.whole as f64;
+    (finding.status, finding.why, finding.members) = (Status::Named, None, vec![finding.effect]);
+}
+
+/// Constant errors of the IMU, which every fit allows for.
+fn constant_errors(fitted: &Fitted) -> Vec<Judged> {
+    // Larger than what any such sensor has, by a share of the smallest size that is one.
+    const SHARE: f64 = 0.8;
+    let point = &fitted.selection.point;
+    let mut out = Vec::new();
+    for card in effects::acting(Role::ConstantError) {
+        let channel = if card.channels.contains(&ResidualChannel::Turn) { TURN } else { PUSH };
+        let size = span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
+        if !fitted.problem.rows[channel].is_empty() && size > SHARE * card.parameters[0].typical[0] {
+            out.push(judge(fitted, &Added { card, ties: Vec::new() }));
+        }
+    }
+    out
+}

@@ -1,0 +1,45 @@
+//! The end of a selection, with everything linear about it.
+
+use super::fit::{FitPoint, covariance};
+use super::numbers::span;
+use super::problem::{ChannelValues, Problem};
+use super::select::Selection;
+use crate::insight::estimate::gram::Grams;
+use crate::model::effects::Card;
+use nalgebra::DMatrix;
+
+/// Everything linear about the end of a selection.
+pub struct Fitted<'a> {
+    pub problem: &'a Problem,
+    pub selection: &'a Selection,
+    /// Of the fitted numbers.
+    pub covariance: DMatrix<f64>,
+    /// Of the fitted numbers' columns and the residual, the last.
+    pub grams: Grams,
+}
+
+impl<'a> Fitted<'a> {
+    pub fn new(problem: &'a Problem, selection: &'a Selection) -> Self {
+        let point = &selection.point;
+        let residual = selection.whitener.apply(&point.residual, &problem.rows);
+        let columns: Vec<&ChannelValues> = point.white.iter().chain([&residual]).collect();
+        let grams = Grams::new(&columns, &problem.rows, problem.blocks);
+        let n = point.free.len();
+        let covariance = covariance(problem, &selection.whitener, point).unwrap_or(DMatrix::zeros(n, n));
+        Self { problem, selection, covariance, grams }
+    }
+
+    pub fn point(&self) -> &FitPoint {
+        &self.selection.point
+    }
+
+    /// Places of an effect's numbers among the fitted ones.
+    pub fn places(&self, card: &Card) -> Vec<usize> {
+        span(card).filter_map(|k| self.point().free.iter().position(|f| *f == k)).collect()
+    }
+
+    /// Places of the other numbers.
+    pub fn rest(&self, own: &[usize]) -> Vec<usize> {
+        (0..self.point().free.len()).filter(|i| !own.contains(i)).collect()
+    }
+}

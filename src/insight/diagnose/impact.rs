@@ -1,0 +1,33 @@
+//! What an effect does to a flight.
+
+use super::fitted::Fitted;
+use super::horizon;
+use super::problem::ChannelValues;
+use crate::base::stats::mean;
+use crate::model::constants::GRAVITY_M_S2;
+use crate::model::effects::{Card, EffectKind};
+
+/// How far apart simulations with and without the effect are after a second, m/s; for sensors, what the error integrates to.
+pub fn impact(fitted: &Fitted, card: &Card, without: &[f64], change: &ChannelValues) -> f64 {
+    let rms = |c: usize| mean(&change[c].iter().map(|x| x * x).collect::<Vec<_>>()).sqrt();
+    let sensors: f64 = (0..3)
+        .map(|k| rms(k) * 0.5 * GRAVITY_M_S2)
+        .chain((3..6).map(rms))
+        .chain((6..9).map(|c| rms(c) * 4.0 * 0.5 * GRAVITY_M_S2))
+        .chain((9..12).map(|c| rms(c) * 4.0))
+        .fold(0.0, f64::max);
+    if matches!(card.kind, EffectKind::Sensor | EffectKind::Random) {
+        return sensors;
+    }
+    let model = &fitted.problem.model;
+    let state = fitted.problem.predict(without);
+    let with = &fitted.point().state;
+    let distances = fitted
+        .problem
+        .records
+        .iter()
+        .enumerate()
+        .map(|(f, record)| horizon::apart(model, record, (&with[f], &fitted.point().x), (&state[f], without)));
+    let apart = distances.fold(0.0, f64::max);
+    if apart > 0.0 { apart } else { sensors }
+}

@@ -1,0 +1,50 @@
+//! An effect's parameters as people read them.
+
+use super::finding::Value;
+use super::fitted::Fitted;
+use super::numbers::{TAU, span};
+use crate::base::stats::NORMAL_95;
+use crate::model::effects::Card;
+use std::collections::BTreeMap;
+
+/// The effect's parameters as people read them, with intervals.
+pub fn parameters(fitted: &Fitted, card: &Card) -> BTreeMap<String, Value> {
+    let at = span(card);
+    let x = &fitted.point().x;
+    let places: Vec<usize> = fitted.places(card);
+    let tau_places: Vec<usize> =
+        [TAU.start, TAU.end - 1].iter().filter_map(|k| fitted.point().free.iter().position(|f| f == k)).collect();
+    let values: Vec<f64> = at.clone().map(|k| x[k]).collect();
+    let shown = |k: &[f64], tau: [f64; 2]| -> Vec<(String, f64, String)> {
+        match card.shown {
+            Some(shown) => shown(k, tau).into_iter().map(|(n, v, u)| (n.to_string(), v, u.to_string())).collect(),
+            None => card.parameters.iter().zip(k).map(|(p, v)| (p.name.to_string(), *v, p.unit.to_string())).collect(),
+        }
+    };
+    let tau = [x[TAU.start], x[TAU.end - 1]];
+    let here = shown(&values, tau);
+    // By how much each shown value changes with the fitted ones (delta method).
+    let mut out = BTreeMap::new();
+    for (i, (name, value, unit)) in here.iter().enumerate() {
+        let mut slopes: Vec<(usize, f64)> = Vec::new();
+        for (j, &place) in places.iter().enumerate() {
+            let step = 1e-4 * card.parameters[j].typical[0];
+            let mut moved = values.clone();
+            moved[j] += step;
+            slopes.push((place, (shown(&moved, tau)[i].1 - value) / step));
+        }
+        for (j, &place) in tau_places.iter().enumerate() {
+            let mut moved = tau;
+            moved[j] += 1e-6;
+            slopes.push((place, (shown(&values, moved)[i].1 - value) / 1e-6));
+        }
+        let variance: f64 = slopes
+            .iter()
+            .flat_map(|a| slopes.iter().map(move |b| (a, b)))
+            .map(|(a, b)| a.1 * b.1 * fitted.covariance[(a.0, b.0)])
+            .sum();
+        let half = NORMAL_95 * variance.max(0.0).sqrt();
+        out.insert(name.clone(), Value { value: *value, low: value - half, high: value + half, unit: unit.clone() });
+    }
+    out
+}
