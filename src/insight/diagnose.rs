@@ -1,9 +1,10 @@
 //! What the simulation gets wrong, and why: from the residuals of flights to the effects that explain them.
 //!
-//! Flights are predicted by the simulator's own equations ([`predict`]) and held against the measurement by channel ([`problem`]). Every effect of the
-//! catalogue is a direction in which the prediction could change; a score test ranks them beside what the compact model's own numbers could take up
-//! ([`score`], [`select`]), the best are fitted ([`fit`]), and what is found has to be evident, replicated, of a size that matters ([`judge`]) and
-//! complete: nothing structured may be left ([`structure`]).
+//! Flights are predicted by the simulator's own equations ([`predict`]) and held against the measurement by channel
+//! ([`problem`]). Every effect of the catalogue is a direction in which the prediction could change; a score test ranks
+//! them beside what the compact model's own numbers could take up ([`score`], [`select`]), the best are fitted
+//! ([`fit`]), and what is found has to be evident, replicated, of a size that matters ([`judge`]) and complete: nothing
+//! structured may be left ([`structure`]).
 
 // Samples, axes and channels index several arrays at once here.
 #![allow(clippy::needless_range_loop)]

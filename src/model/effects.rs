@@ -6,13 +6,15 @@
 //! [`crate::model::dynamics::extended`]. To add an effect, write its file and its line in the list below.
 
 mod card;
+mod dependence;
 mod quantity;
 mod stages;
 mod values;
 
 use crate::base::lane::Real;
 pub use card::{Card, CompactNumber, EffectKind, EffectParameter, Evidence, RateResponse, ResidualChannel, Role, Twin};
-pub use quantity::{Quantities, Quantity};
+pub use dependence::Quantities;
+pub use quantity::Quantity;
 pub use stages::{
     Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, RelativeWind, Sensed, Setpoint, ThrustInput,
 };
@@ -250,28 +252,5 @@ mod tests {
         }
         assert_eq!(end, COUNT + LOG_COUNT);
         assert!(span("nothing").is_none() && card("nothing").is_none());
-    }
-
-    #[test]
-    fn sensors_read_as_their_equations_say() {
-        let read = |id: &str, sizes: &[f64]| {
-            let mut k = [0.0; LOG_COUNT];
-            let span = span(id).expect("listed");
-            k[span.start - COUNT..span.end - COUNT].copy_from_slice(sizes);
-            let mut sensed =
-                Sensed { rates: [1.0, 2.0, 3.0], acceleration: [0.0; 3], force: [0.0, 0.0, 10.0], throttle: 0.5 };
-            sense(&k, &mut sensed);
-            (sensed.rates, sensed.force)
-        };
-        assert_eq!(read("stream_offset", &[0.01]), ([1.0, 2.0, 3.0], [0.0, 0.0, 10.0]));
-        // w x (w x r) of r = x: (w . r) w - w^2 r.
-        assert_eq!(read("imu_lever_arm", &[1.0, 0.0, 0.0]).1, [1.0 - 14.0, 2.0, 10.0 + 3.0]);
-        // r x f of r = x and f = z is -y.
-        assert_eq!(read("imu_misalignment", &[0.1, 0.0, 0.0]), ([1.0, 2.0 - 0.1 * 3.0, 3.0 + 0.2], [0.0, -1.0, 10.0]));
-        assert_eq!(read("accel_scale", &[0.5]).1, [0.0, 0.0, 15.0]);
-        assert_eq!(read("accel_bias", &[0.5, 0.25, 1.0]).1, [0.5, 0.25, 11.0]);
-        assert_eq!(read("gyro_scale", &[0.5]).0, [1.5, 3.0, 4.5]);
-        assert_eq!(read("gyro_bias", &[0.5, 0.25, 1.0]).0, [1.5, 2.25, 4.0]);
-        assert_eq!(read("vibration_rectification", &[4.0, 8.0, 12.0]).1, [1.0, 2.0, 13.0]);
     }
 }

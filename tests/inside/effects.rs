@@ -4,7 +4,7 @@ use racer::base::lane::Level;
 use racer::base::rng::{Philox, Stream};
 use racer::model::dynamics::extended::Extended;
 use racer::model::dynamics::{Craft, Factors, Parameters, State, step};
-use racer::model::effects::{self, Card, MODEL};
+use racer::model::effects::{self, COUNT, Card, LOG_COUNT, MODEL, Sensed};
 use racer::model::sim::Batch;
 use racer::model::thrust::specific_thrust;
 use racer::model::vehicle::Vehicle;
@@ -440,4 +440,27 @@ fn draws_are_joint() {
         close(mean[i], 0.0, 5.0 * (covariance[i][i] / f64::from(n)).sqrt(), "mean");
         (0..2).for_each(|j| close(square[i][j], covariance[i][j], error(i, j), "covariance"));
     }
+}
+
+#[test]
+fn sensors_read_as_their_equations_say() {
+    let read = |id: &str, sizes: &[f64]| {
+        let mut k = [0.0; LOG_COUNT];
+        let span = effects::span(id).expect("listed");
+        k[span.start - COUNT..span.end - COUNT].copy_from_slice(sizes);
+        let mut sensed =
+            Sensed { rates: [1.0, 2.0, 3.0], acceleration: [0.0; 3], force: [0.0, 0.0, 10.0], throttle: 0.5 };
+        effects::sense(&k, &mut sensed);
+        (sensed.rates, sensed.force)
+    };
+    assert_eq!(read("stream_offset", &[0.01]), ([1.0, 2.0, 3.0], [0.0, 0.0, 10.0]));
+    // w x (w x r) of r = x: (w . r) w - w^2 r.
+    assert_eq!(read("imu_lever_arm", &[1.0, 0.0, 0.0]).1, [1.0 - 14.0, 2.0, 10.0 + 3.0]);
+    // r x f of r = x and f = z is -y.
+    assert_eq!(read("imu_misalignment", &[0.1, 0.0, 0.0]), ([1.0, 2.0 - 0.1 * 3.0, 3.0 + 0.2], [0.0, -1.0, 10.0]));
+    assert_eq!(read("accel_scale", &[0.5]).1, [0.0, 0.0, 15.0]);
+    assert_eq!(read("accel_bias", &[0.5, 0.25, 1.0]).1, [0.5, 0.25, 11.0]);
+    assert_eq!(read("gyro_scale", &[0.5]).0, [1.5, 3.0, 4.5]);
+    assert_eq!(read("gyro_bias", &[0.5, 0.25, 1.0]).0, [1.5, 2.25, 4.0]);
+    assert_eq!(read("vibration_rectification", &[4.0, 8.0, 12.0]).1, [1.0, 2.0, 13.0]);
 }

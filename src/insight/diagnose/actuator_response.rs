@@ -22,7 +22,8 @@ pub fn body_rates(p: &Extended<f64>, record: &FlightRecord, command: &[[f64; 4]]
     }
 }
 
-/// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next, and what arrives is integrated exactly.
+/// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next,
+/// and what arrives is integrated exactly.
 #[inline(always)]
 pub fn actuator_response(
     p: &Extended<f64>,

@@ -16,7 +16,8 @@ const LEFT_OF_EXPLAINED: f64 = 0.2;
 const SURER: f64 = 0.37;
 /// What a finding explains has to be so many times the structure that is left.
 const ADEQUATE: f64 = 1.5;
-/// What has a memory, where it is unexplained, may be so many times what a finding explains; measured flights are never white.
+/// What has a memory, where it is unexplained, may be so many times what a finding explains; measured flights are never
+/// white.
 const MEMORY: f64 = 3.0;
 /// Share of what is unexplained that goes with time from which on a finding is not the same early and late.
 const CHANGES: f64 = 0.2;

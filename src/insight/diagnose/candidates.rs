@@ -107,8 +107,8 @@ pub fn candidates(problem: &Problem, whitener: &Whitener, point: &FitPoint, card
     all.into_par_iter().filter_map(one).collect()
 }
 
-/// The columns after the last of `held` was added: recomputed where it moved in time or in voltage what they change, and of the causes that were tied with
-/// it; else as they were.
+/// The columns after the last of `held` was added: recomputed where it moved in time or in voltage what they change,
+/// and of the causes that were tied with it; else as they were.
 pub fn renewed(
     problem: &Problem,
     whitener: &Whitener,

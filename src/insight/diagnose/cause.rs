@@ -1,5 +1,5 @@
-//! An effect that looks like nothing but a move of thrust and drag against the base vehicle: the compact model takes it up
-//! without trace, and only the base tells.
+//! An effect that looks like nothing but a move of thrust and drag against the base vehicle: the compact model takes it
+//! up without trace, and only the base tells.
 
 use super::finding::{Finding, Status, Value};
 use super::fit::{covariance, fit};

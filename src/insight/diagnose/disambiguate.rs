@@ -19,8 +19,8 @@ fn at(card: &Card) -> usize {
     span(card).start
 }
 
-/// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two of
-/// the same size.
+/// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two
+/// of the same size.
 pub fn clocks(problem: &Problem, selection: &mut Selection) {
     let Some((stamped, delayed)) = effects::twins(Evidence::OdometryClock) else { return };
     let moved = mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>());
@@ -78,8 +78,8 @@ fn counted(selection: &mut Selection, dropout: &'static Card, delayed: &Card, sh
     (x, free)
 }
 
-/// The same where lost commands, added as number `i`, are none: their mean is there, their variance is not. The rival that
-/// has the same mean takes their place.
+/// The same where lost commands, added as number `i`, are none: their mean is there, their variance is not. The rival
+/// that has the same mean takes their place.
 fn not_lost(selection: &mut Selection, i: usize, delayed: &'static Card) -> (Vec<f64>, Vec<usize>) {
     let mut x = selection.point.x.clone();
     let mut free = selection.point.free.clone();

@@ -1,4 +1,5 @@
-//! The vehicle that a diagnosis describes: the compact model's numbers as fitted with its effects, the effects, and how well they are known.
+//! The vehicle that a diagnosis describes: the compact model's numbers as fitted with its effects, the effects, and how
+//! well they are known.
 
 use super::finding::{Finding, Status};
 use super::fitted::Fitted;
@@ -8,8 +9,8 @@ use crate::model::vehicle::Vehicle;
 use crate::model::vehicle::extension::Extension;
 use std::collections::BTreeMap;
 
-/// The base vehicle with every named effect of the simulator. Effects of sensors and of chance are no part of a vehicle; what a change of
-/// the compact model's numbers already holds is not added a second time.
+/// The base vehicle with every named effect of the simulator. Effects of sensors and of chance are no part of a
+/// vehicle; what a change of the compact model's numbers already holds is not added a second time.
 pub fn vehicle(fitted: &Fitted, findings: &[Finding]) -> Vehicle {
     let model = &fitted.problem.model;
     let point = &fitted.selection.point;

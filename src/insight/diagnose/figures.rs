@@ -15,11 +15,13 @@ use windows::{Errors, Window};
 
 /// Most channels that are shown.
 const MOST: usize = 6;
-/// Share of a channel's residual power that goes with an effect, or fall of its root mean square, that is worth a figure.
+/// Share of a channel's residual power that goes with an effect, or fall of its root mean square, that is worth a
+/// figure.
 const SHOWN: f64 = 0.05;
 const FELL: f64 = 0.02;
 
-/// Everything that is drawn of one channel. Before is the compact model, fitted to the flights; after is the same with what was found.
+/// Everything that is drawn of one channel. Before is the compact model, fitted to the flights; after is the same with
+/// what was found.
 pub struct ChannelFigure {
     pub name: &'static str,
     pub unit: &'static str,

@@ -81,7 +81,8 @@ pub struct Finding {
     pub explained: BTreeMap<&'static str, f64>,
     /// On flight that was not used for fitting: the extended model without this effect, and with it.
     pub gain: BTreeMap<&'static str, Gain>,
-    /// How far apart the simulations with and without it are after one second, m/s; for sensors, what the error integrates to.
+    /// How far apart the simulations with and without it are after one second, m/s; for sensors, what the error
+    /// integrates to.
     pub impact: f64,
     /// Identifiers of effects that look like it.
     pub rivals: Vec<&'static str>,

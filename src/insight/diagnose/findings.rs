@@ -1,5 +1,5 @@
-//! Everything that was found: the judged effects, gusts, and what moved against the base vehicle; and which of them what is
-//! left puts in doubt.
+//! Everything that was found: the judged effects, gusts, and what moved against the base vehicle; and which of them
+//! what is left puts in doubt.
 
 use super::adequacy;
 use super::cause::MOVES;

@@ -1,4 +1,5 @@
-//! What the effects are worth on flight that was not used for fitting: the last flight where there are several, else the last 30 % of the time.
+//! What the effects are worth on flight that was not used for fitting: the last flight where there are several, else
+//! the last 30 % of the time.
 
 use super::finding::{Ahead, Gain};
 use super::fit::{self, FitPoint};
@@ -27,8 +28,8 @@ pub struct HeldOut {
 }
 
 impl HeldOut {
-    /// What one effect is worth beside the others: the extended model against itself without that effect, whose absence moves the numbers by `change`.
-    /// An effect that is only suspected is not in the extended model: there it is added.
+    /// What one effect is worth beside the others: the extended model against itself without that effect, whose absence
+    /// moves the numbers by `change`. An effect that is only suspected is not in the extended model: there it is added.
     pub fn of_one(&self, problem: &Problem, change: &[f64], held: bool) -> BTreeMap<&'static str, Gain> {
         let sign = if held { 1.0 } else { -1.0 };
         let moved = |((x, by), n): ((&f64, &f64), &ModelNumber)| (x + sign * by).clamp(n.low, n.high);
@@ -54,7 +55,8 @@ fn held_out(problem: &Problem) -> Vec<bool> {
     out
 }
 
-/// Fits on the one part, predicts the other: the base, and what is `kept` of the `selection`. What could be gained at most is what all that was tried would.
+/// Fits on the one part, predicts the other: the base, and what is `kept` of the `selection`. What could be gained at
+/// most is what all that was tried would.
 pub fn measure(problem: &Problem, selection: &Selection, kept: &Selection) -> HeldOut {
     let out = held_out(problem);
     let train = selection.whitener.without(&problem.rows, &out);

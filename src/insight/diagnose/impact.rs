@@ -7,7 +7,8 @@ use crate::base::stats::mean;
 use crate::model::constants::GRAVITY_M_S2;
 use crate::model::effects::{Card, EffectKind};
 
-/// How far apart simulations with and without the effect are after a second, m/s; for sensors, what the error integrates to.
+/// How far apart simulations with and without the effect are after a second, m/s; for sensors, what the error
+/// integrates to.
 pub fn impact(fitted: &Fitted, card: &Card, without: &[f64], change: &ChannelValues) -> f64 {
     let rms = |c: usize| mean(&change[c].iter().map(|x| x * x).collect::<Vec<_>>()).sqrt();
     let sensors: f64 = (0..3)

@@ -61,8 +61,8 @@ pub fn judge(fitted: &Fitted, added: &Added) -> Judged {
     Judged { finding, material, bounded, change }
 }
 
-/// Shares of the residual power of its channels that go with an effect, which changes the prediction by `change`; and the
-/// channel of the largest.
+/// Shares of the residual power of its channels that go with an effect, which changes the prediction by `change`; and
+/// the channel of the largest.
 fn explained(fitted: &Fitted, card: &Card, change: &ChannelValues) -> (BTreeMap<&'static str, f64>, &'static str) {
     let residual = &fitted.point().residual;
     let power = |v: &[f64]| mean(&v.iter().map(|x| x * x).collect::<Vec<_>>());
@@ -83,8 +83,8 @@ fn explained(fitted: &Fitted, card: &Card, change: &ChannelValues) -> (BTreeMap<
     (explained, most.1)
 }
 
-/// Change of the prediction that the effect makes, by channel, beside what the other numbers could take over, in physical units; and
-/// the numbers without it.
+/// Change of the prediction that the effect makes, by channel, beside what the other numbers could take over, in
+/// physical units; and the numbers without it.
 fn without(fitted: &Fitted, card: &Card) -> (Vec<f64>, ChannelValues) {
     let own = fitted.places(card);
     let rest = fitted.rest(&own);
@@ -103,7 +103,8 @@ fn without(fitted: &Fitted, card: &Card) -> (Vec<f64>, ChannelValues) {
             taken_over[k] = (taken_over[k] + taken).clamp(number.low, number.high);
         }
     }
-    // A large effect is not linear: where what the others take over by its slope makes it worse, they are left as they are.
+    // A large effect is not linear: where what the others take over by its slope makes it worse, they are left as they
+    // are.
     let judged = |x: Vec<f64>| {
         let state = fitted.problem.predict(&x);
         let residual = fitted.problem.residuals(&state);

@@ -7,8 +7,8 @@ use crate::model::attitude::{Quaternion, body_axes, compose, in_world, normalize
 use crate::model::dynamics::extended;
 use crate::model::effects::{self, Role, Sensed};
 
-/// What the IMU, corrected, integrates to over each window: the turn (rotation vector) and the change of velocity (less gravity), both in the
-/// body frame at the window's beginning.
+/// What the IMU, corrected, integrates to over each window: the turn (rotation vector) and the change of velocity (less
+/// gravity), both in the body frame at the window's beginning.
 #[inline(always)]
 pub fn integrate(model: &Model, record: &FlightRecord, x: &[f64], command: &[[f64; 4]]) -> [Vec<f64>; 6] {
     let mut out: [Vec<f64>; 6] = Default::default();
@@ -35,7 +35,8 @@ pub fn integrate(model: &Model, record: &FlightRecord, x: &[f64], command: &[[f6
     for &[from, to] in &record.windows {
         let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
         let axes = record.axes[from];
-        // Gravity was taken off the measured change for as long as the recorder's clock said, not for as long as it was.
+        // Gravity was taken off the measured change for as long as the recorder's clock said, not for as long as it
+        // was.
         let fast = (1.0 - stretch) * (record.time[to] - record.time[from]) * model.vehicle().gravity_m_s2;
         let mut pushed: [f64; 3] = std::array::from_fn(|j| fast * axes[j][2]);
         for i in from * fine.every..to * fine.every {
@@ -63,7 +64,8 @@ pub fn integrate(model: &Model, record: &FlightRecord, x: &[f64], command: &[[f6
     out
 }
 
-/// The truth behind a reading of rates and specific force: what the sensors make of it is small, so that two rounds of correction are enough.
+/// The truth behind a reading of rates and specific force: what the sensors make of it is small, so that two rounds of
+/// correction are enough.
 #[inline(always)]
 fn truth(k: &[f64], measured: [[f64; 3]; 2], acceleration: [f64; 3], throttle: f64) -> [f64; 6] {
     let [mut rates, mut force] = measured;
@@ -97,7 +99,8 @@ fn shifted(record: &FlightRecord, offset: f64) -> Vec<[f64; 3]> {
     (0..n).map(|i| std::array::from_fn(|k| at(record.fine.time[i] + offset, k, i))).collect()
 }
 
-/// Specific forces `force` of the IMU's samples, turned into the world and through a first-order lag of `tau` seconds; straight lines between samples.
+/// Specific forces `force` of the IMU's samples, turned into the world and through a first-order lag of `tau` seconds;
+/// straight lines between samples.
 #[inline(always)]
 pub fn lagged(record: &FlightRecord, tau: f64, force: impl Fn(usize) -> [f64; 3]) -> Vec<[f64; 3]> {
     let fine = &record.fine;

@@ -1,13 +1,13 @@
-//! The numbers that a diagnosis may move: those of the compact model, of every effect, and the voltage each flight begins
-//! with.
+//! The numbers that a diagnosis may move: those of the compact model, of every effect, and the voltage each flight
+//! begins with.
 
 use crate::model::dynamics::drag;
 use crate::model::effects::{self, COUNT, Card, CompactNumber, LOG_COUNT, Quantities, Quantity};
 use crate::model::vehicle::Vehicle;
 use std::ops::Range;
 
-/// Order of the numbers: time constants (s), maximum rates (rad/s), c0..c5 (m/s2), drag per axis (1/m), discharge (V/s),
-/// then all effects of the simulator, all others, and the voltage at the beginning of each flight (V).
+/// Order of the numbers: time constants (s), maximum rates (rad/s), c0..c5 (m/s2), drag per axis (1/m), discharge
+/// (V/s), then all effects of the simulator, all others, and the voltage at the beginning of each flight (V).
 pub const TAU: Range<usize> = 0..4;
 pub const MAX_RATE: Range<usize> = 4..7;
 pub const THRUST: Range<usize> = 7..13;

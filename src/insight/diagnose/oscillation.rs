@@ -1,5 +1,6 @@
-//! Whether what is left of the force swings: a load on a line, a loose battery, a frame that rings. No signal of the moment tells that, because a swing
-//! remembers; but half a period later it has the other sign, and after a whole one its own again, which gusts and wrong drag never have.
+//! Whether what is left of the force swings: a load on a line, a loose battery, a frame that rings. No signal of the
+//! moment tells that, because a swing remembers; but half a period later it has the other sign, and after a whole one
+//! its own again, which gusts and wrong drag never have.
 
 use super::predict::FORCE;
 use super::problem::{ChannelValues, Problem, ResidualRow};

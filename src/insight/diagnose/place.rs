@@ -1,5 +1,5 @@
-//! Whether what is left of the horizontal force belongs to places in the world: a fan, the lee of a building. No signal of the vehicle tells that,
-//! because the same place pushes another way when the vehicle has turned.
+//! Whether what is left of the horizontal force belongs to places in the world: a fan, the lee of a building. No signal
+//! of the vehicle tells that, because the same place pushes another way when the vehicle has turned.
 
 use super::folds::fold;
 use super::predict::FORCE;
@@ -12,7 +12,8 @@ const SEEN: f64 = 100.0;
 /// Share of the horizontal residual from which it is told.
 const LEAST: f64 = 0.05;
 
-/// Share of the horizontal residual that its mean at the same place, at other times, predicts beyond chance; none below a share that matters.
+/// Share of the horizontal residual that its mean at the same place, at other times, predicts beyond chance; none below
+/// a share that matters.
 pub fn share(problem: &Problem, residual: &ChannelValues) -> Option<f64> {
     let rows = &problem.rows[FORCE];
     let same = |c: usize| problem.rows[c].len() == rows.len() && residual[c].len() == rows.len();

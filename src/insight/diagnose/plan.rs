@@ -1,5 +1,5 @@
-//! What flights could show, before any residual is looked at: the smallest size of each effect that they would give away, and tell from its
-//! nearest rival.
+//! What flights could show, before any residual is looked at: the smallest size of each effect that they would give
+//! away, and tell from its nearest rival.
 
 use super::finding::{Detectable, NotDetectable};
 use super::numbers::span;

@@ -113,7 +113,8 @@ impl Problem {
         self.secant(state, x, &[(k, x[k] + step)], 1.0 / step)
     }
 
-    /// `scale` times the change of the prediction when numbers take other values. A channel that does not change is empty.
+    /// `scale` times the change of the prediction when numbers take other values. A channel that does not change is
+    /// empty.
     pub fn secant(&self, state: &Predictions, x: &[f64], to: &[(usize, f64)], scale: f64) -> ChannelValues {
         let mut moved = x.to_vec();
         to.iter().for_each(|&(k, value)| moved[k] = value);

@@ -1,4 +1,5 @@
-//! A flight, ready to be predicted: what was commanded, what the surroundings were, and what was measured, on the IMU's clock.
+//! A flight, ready to be predicted: what was commanded, what the surroundings were, and what was measured, on the IMU's
+//! clock.
 
 use crate::base::stats::quantile;
 use crate::flight::Log;
@@ -14,8 +15,8 @@ pub const BIN_S: f64 = 0.01;
 /// Length of the stretches over which turns and pushes are compared, s.
 const OVER_S: f64 = 0.25;
 
-/// The IMU is thinned to about this rate for the residuals of rates and forces, Hz: what more of it says is the same again. What is
-/// integrated stays whole.
+/// The IMU is thinned to about this rate for the residuals of rates and forces, Hz: what more of it says is the same
+/// again. What is integrated stays whole.
 const ENOUGH_HZ: f64 = 250.0;
 
 /// The whole IMU, for integration.
@@ -43,7 +44,8 @@ pub struct FlightRecord {
     pub sent: Vec<(f64, [f64; 4])>,
     /// Whether rates and thrust were commanded.
     pub commanded: [bool; 2],
-    /// Whether commands and IMU were stamped by one clock, and whether the thrust command is in truth a measured rotor speed.
+    /// Whether commands and IMU were stamped by one clock, and whether the thrust command is in truth a measured rotor
+    /// speed.
     pub one_clock: bool,
     pub from_rotors: bool,
     /// Body rates (rad/s) and specific force (m/s2) as measured.

@@ -11,8 +11,8 @@ use nalgebra::DVector;
 pub const REPLICATED: f64 = 15.0;
 /// Standard deviations that its size has to be.
 const SURE: f64 = 4.0;
-/// An effect that is rarely flown is also named where at least so many stretches show it by themselves, hold at least this share of all that the flight
-/// tells of it, and its size is so many standard deviations.
+/// An effect that is rarely flown is also named where at least so many stretches show it by themselves, hold at least
+/// this share of all that the flight tells of it, and its size is so many standard deviations.
 const RARE: (f64, f64, f64) = (4.0, 0.7, 6.0);
 
 /// How often an effect was seen, and how many standard deviations its size is.
@@ -32,8 +32,9 @@ impl Replicated {
     }
 }
 
-/// How many stretches of flight agree on the effect. Either all do a little (the robust score of leaving it out counts them), or a few do by
-/// themselves, beyond two standard deviations, less those that contradict; with how sure all together are.
+/// How many stretches of flight agree on the effect. Either all do a little (the robust score of leaving it out counts
+/// them), or a few do by themselves, beyond two standard deviations, less those that contradict; with how sure all
+/// together are.
 pub fn stretches(fitted: &Fitted, card: &Card) -> Replicated {
     let own = fitted.places(card);
     if own.is_empty() {

@@ -6,7 +6,7 @@ use super::numbers::span;
 use super::problem::{ChannelValues, Problem};
 use super::rank::{Reach, rank};
 use super::size::is_material;
-use super::trial::{GAIN, tied, try_best};
+use super::trial::{GAIN, Trial, tied, try_best};
 use super::whiten::Whitener;
 use crate::insight::estimate::gram::Grams;
 use crate::model::effects::{Card, are_rivals};
@@ -63,79 +63,112 @@ pub struct Added {
 pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection {
     let free = base_numbers(problem);
     watch("fitting the base", 0.1);
-    let plain = problem.residuals(&problem.predict(&problem.model.base));
-    let mut whitener = Whitener::plain(&plain, &problem.rows);
-    let base_state = problem.predict(&problem.model.base);
-    let skewed = super::skew::estimate(problem, &base_state, &plain).is_some_and(|skew| skew.abs() > 5e-5);
-    // Clocks that run apart leave nothing that a fit of the base could be about.
-    let mut point = if skewed {
-        fit::stay(problem, &whitener, &problem.model.base, &free)
-    } else {
-        fit::fit(problem, &whitener, &problem.model.base, &free)
-    };
-    let mut added: Vec<Added> = Vec::new();
+    let mut search = Search::new(problem, &free);
     let mut reach = Vec::new();
-    let mut pending: Vec<(&'static Card, f64)> = Vec::new();
-    let mut found: Vec<Candidate> = Vec::new();
     for round in 0..=MOST {
         watch("weighing causes", 0.2 + 0.6 * round as f64 / MOST as f64);
-        let held: Vec<&'static Card> = added.iter().map(|a| a.card).collect();
-        found = if round == 0 {
-            candidates(problem, &whitener, &point, &causes(problem))
-        } else {
-            renewed(problem, &whitener, &point, &held, &pending, found)
-        };
-        // Noise is what is left when everything is taken off that any cause could explain.
-        for _ in 0..if round == 0 { 2 } else { 1 } {
-            whitener = saturated(problem, &whitener, &point, &found);
-            point = if skewed && round == 0 {
-                fit::stay(problem, &whitener, &point.x, &point.free)
-            } else {
-                fit::fit(problem, &whitener, &point.x, &point.free)
-            };
-            found.par_iter_mut().for_each(|c| c.white = whitener.apply(&c.change, &problem.rows));
-        }
-        let (scored, reached) = rank(problem, &whitener, &point, &found, round == 0);
-        if round == 0 {
+        let first = round == 0;
+        search.find(first);
+        let (order, reached) = rank(problem, &search.whitener, &search.point, &search.found, first);
+        if first {
             reach = reached;
         }
-        // What had the same gain for another reason has it still.
-        if let Some(last) = added.last_mut() {
-            let still = |card: &Card| {
-                let gains = scored.iter().filter(|s| found[s.0].card().id == card.id).map(|s| s.1);
-                gains.fold(0.0, f64::max)
-            };
-            last.ties =
-                pending.drain(..).filter(|(card, gain)| still(card) < COMPETES * gain).map(|(card, _)| card).collect();
-        }
-        if round == MOST {
+        search.keep_ties(&order);
+        if round == MOST || !search.add(&order) {
             break;
         }
-        let mut trials = try_best(problem, &whitener, &point, &found, &scored);
-        // Beside a rival that is already there, it would only take that one's place.
-        trials.retain(|t| !(t.bounded(problem) && held.iter().any(|h| are_rivals(h, t.card))));
-        let best_of = |material: bool| {
-            let fitting = trials.iter().filter(|t| !material || is_material(t.card, &t.point.x));
-            fitting.max_by(|a, b| a.merit(problem).total_cmp(&b.merit(problem)))
-        };
-        let Some(mut best) = best_of(false) else { break };
-        // What is too small to matter is kept beside the causes only where it would stand in their way.
-        if !is_material(best.card, &best.point.x) && best.gain < NUISANCE {
-            match best_of(true) {
-                Some(material) if material.gain >= GAIN => best = material,
-                _ => break,
-            }
-        }
-        if best.gain < GAIN {
-            break;
-        }
-        let near = trials.iter().filter(|t| t.card.id != best.card.id && tied(best, t));
-        pending = near.map(|t| (t.card, t.gain)).collect();
-        added.push(Added { card: best.card, ties: Vec::new() });
-        point = fit::fit(problem, &whitener, &best.point.x, &best.point.free);
     }
+    let Search { whitener, point, added, found, .. } = search;
     let base = if added.is_empty() { point.clone() } else { fit::fit(problem, &whitener, &problem.model.base, &free) };
     Selection { point, whitener, added, base, reach, others: found }
+}
+
+/// A selection on its way.
+struct Search<'a> {
+    problem: &'a Problem,
+    /// Whether clocks run apart: that leaves nothing that a fit of the base could be about.
+    skewed: bool,
+    whitener: Whitener,
+    point: FitPoint,
+    added: Vec<Added>,
+    /// What nearly took the place of the last one added, with its gain.
+    pending: Vec<(&'static Card, f64)>,
+    found: Vec<Candidate>,
+}
+
+impl<'a> Search<'a> {
+    /// The base alone, with the numbers `free`.
+    fn new(problem: &'a Problem, free: &[usize]) -> Self {
+        let base = &problem.model.base;
+        let state = problem.predict(base);
+        let plain = problem.residuals(&state);
+        let whitener = Whitener::plain(&plain, &problem.rows);
+        let skewed = super::skew::estimate(problem, &state, &plain).is_some_and(|skew| skew.abs() > 5e-5);
+        let point = if skewed { fit::stay } else { fit::fit }(problem, &whitener, base, free);
+        Search { problem, skewed, whitener, point, added: Vec::new(), pending: Vec::new(), found: Vec::new() }
+    }
+
+    fn held(&self) -> Vec<&'static Card> {
+        self.added.iter().map(|a| a.card).collect()
+    }
+
+    /// Candidates beside what is held, whitened by what they and the base leave.
+    fn find(&mut self, first: bool) {
+        let problem = self.problem;
+        self.found = if first {
+            candidates(problem, &self.whitener, &self.point, &causes(problem))
+        } else {
+            let found = std::mem::take(&mut self.found);
+            renewed(problem, &self.whitener, &self.point, &self.held(), &self.pending, found)
+        };
+        // Noise is what is left when everything is taken off that any cause could explain.
+        for _ in 0..if first { 2 } else { 1 } {
+            self.whitener = saturated(problem, &self.whitener, &self.point, &self.found);
+            let fit = if self.skewed && first { fit::stay } else { fit::fit };
+            self.point = fit(problem, &self.whitener, &self.point.x, &self.point.free);
+            let whitener = &self.whitener;
+            self.found.par_iter_mut().for_each(|c| c.white = whitener.apply(&c.change, &problem.rows));
+        }
+    }
+
+    /// Of what nearly took the place of the last one added, that which loses its gain beside it: what had the same gain
+    /// for another reason has it still.
+    fn keep_ties(&mut self, order: &[(usize, f64, f64)]) {
+        let Some(last) = self.added.last_mut() else { return };
+        let still = |card: &Card| {
+            let gains = order.iter().filter(|s| self.found[s.0].card().id == card.id).map(|s| s.1);
+            gains.fold(0.0, f64::max)
+        };
+        let ties = self.pending.drain(..).filter(|(card, gain)| still(card) < COMPETES * gain);
+        last.ties = ties.map(|(card, _)| card).collect();
+    }
+
+    /// Adds the best of the first of the ranking, if it is worth it.
+    fn add(&mut self, order: &[(usize, f64, f64)]) -> bool {
+        let problem = self.problem;
+        let mut trials = try_best(problem, &self.whitener, &self.point, &self.found, order);
+        // Beside a rival that is already there, it would only take that one's place.
+        let held = self.held();
+        trials.retain(|t| !(t.bounded(problem) && held.iter().any(|h| are_rivals(h, t.card))));
+        let Some(best) = best(problem, &trials) else { return false };
+        let near = trials.iter().filter(|t| t.card.id != best.card.id && tied(best, t));
+        self.pending = near.map(|t| (t.card, t.gain)).collect();
+        self.added.push(Added { card: best.card, ties: Vec::new() });
+        self.point = fit::fit(problem, &self.whitener, &best.point.x, &best.point.free);
+        true
+    }
+}
+
+/// The best of the trials, if it is worth adding.
+fn best<'a>(problem: &Problem, trials: &'a [Trial]) -> Option<&'a Trial> {
+    let best_of = |material: bool| {
+        let fitting = trials.iter().filter(|t| !material || is_material(t.card, &t.point.x));
+        fitting.max_by(|a, b| a.merit(problem).total_cmp(&b.merit(problem)))
+    };
+    let best = best_of(false)?;
+    // What is too small to matter is kept beside the causes only where it would stand in their way.
+    let counts = is_material(best.card, &best.point.x) || best.gain >= NUISANCE;
+    if counts { Some(best) } else { best_of(true) }.filter(|best| best.gain >= GAIN)
 }
 
 /// The whitener of what is left when all columns are taken off.
@@ -155,7 +188,8 @@ fn saturated(problem: &Problem, whitener: &Whitener, point: &FitPoint, found: &[
     Whitener::of(&left, &problem.rows)
 }
 
-/// By how much the whitened squares of `point` would still fall if every number and every cause were fitted, less what that takes of the noise alone.
+/// By how much the whitened squares of `point` would still fall if every number and every cause were fitted, less what
+/// that takes of the noise alone.
 pub fn left_to_gain(problem: &Problem, whitener: &Whitener, point: &FitPoint, selection: &Selection) -> f64 {
     let own = fit::whitened_slopes(problem, whitener, &point.state, &point.x, &selection.point.free);
     let causes: Vec<ChannelValues> =

@@ -1,5 +1,5 @@
-//! Whether the clocks of commands and sensors run apart: the offset between simulated and measured rates, followed through the flight. A fit would not find
-//! it, because after a minute the two have nothing in common any more.
+//! Whether the clocks of commands and sensors run apart: the offset between simulated and measured rates, followed
+//! through the flight. A fit would not find it, because after a minute the two have nothing in common any more.
 
 use super::predict::RATE;
 use super::problem::{ChannelValues, Predictions, Problem};
@@ -12,7 +12,8 @@ const MOST: f64 = 0.025;
 /// Least correlation at which an offset is believed.
 const LIKE: f64 = 0.5;
 
-/// Skew of the sensors' clock, as a share, if the rates can tell; from the prediction `state` and what was measured less it.
+/// Skew of the sensors' clock, as a share, if the rates can tell; from the prediction `state` and what was measured
+/// less it.
 pub fn estimate(problem: &Problem, state: &Predictions, residual: &ChannelValues) -> Option<f64> {
     let mut slopes = Vec::new();
     for f in 0..state.len() {

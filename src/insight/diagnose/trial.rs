@@ -28,7 +28,8 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Gain; half of it where a number ends at the bound of its range, for then the effect stands in for something else.
+    /// Gain; half of it where a number ends at the bound of its range, for then the effect stands in for something
+    /// else.
     pub fn merit(&self, problem: &Problem) -> f64 {
         if self.bounded(problem) { 0.5 * self.gain } else { self.gain }
     }
