@@ -1,6 +1,8 @@
 //! The parts of the library, each against numbers and rules known without it.
 
+mod cards;
 mod config;
+mod dependence;
 mod dynamics;
 mod effects;
 mod fly;
