@@ -31,7 +31,7 @@ const fn entry_of(
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
-pub const CATALOGUE: [Entry; 42] = [
+pub const CATALOGUE: &[Entry] = &[
     entry_of("rate_delay", "delay", "s", 0.002, 0.05, false),
     entry_of("yaw_delay", "extra", "s", 0.004, 0.03, false),
     entry_of("thrust_delay", "delay", "s", 0.002, 0.03, false),
