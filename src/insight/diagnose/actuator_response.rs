@@ -5,11 +5,25 @@ use super::record::FlightRecord;
 use crate::model::dynamics::extended::{self, Extended};
 use crate::model::effects::Role;
 
-/// The filtered commands at every sample.
+/// The filtered commands at every sample; by how much those of the rates lag, summed; what they go to, and how fast those of
+/// the rates change.
 pub struct ActuatorResponse {
     pub command: Vec<[f64; 4]>,
     pub lag: Vec<f64>,
     pub setpoint: Vec<([f64; 4], [f64; 3])>,
+}
+
+impl ActuatorResponse {
+    fn with_capacity(n: usize) -> Self {
+        Self { command: Vec::with_capacity(n), lag: Vec::with_capacity(n), setpoint: Vec::with_capacity(n) }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, command: [f64; 4], lag: f64, setpoint: ([f64; 4], [f64; 3])) {
+        self.command.push(command);
+        self.lag.push(lag);
+        self.setpoint.push(setpoint);
+    }
 }
 
 /// Body rates: those that the filtered commands make, or the gyro's where the log has no commands of them.
@@ -22,8 +36,46 @@ pub fn body_rates(p: &Extended<f64>, record: &FlightRecord, command: &[[f64; 4]]
     }
 }
 
-/// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next,
-/// and what arrives is integrated exactly.
+/// Commands on their way: those of roll and pitch, of yaw, and of thrust arrive each at their time.
+struct Arrivals<'a> {
+    sent: &'a [(f64, [f64; 4])],
+    late: [f64; 3],
+    /// Share that is lost; the one before is held.
+    lost: f64,
+    /// The last that arrived, and what holds on average.
+    at: [usize; 3],
+    command: [f64; 4],
+}
+
+impl Arrivals<'_> {
+    /// Which arrive next, and when.
+    #[inline(always)]
+    fn next(&self) -> (usize, f64) {
+        let due = |g: usize| self.sent.get(self.at[g] + 1).map_or(f64::INFINITY, |next| next.0 + self.late[g]);
+        let all = [due(0), due(1), due(2)];
+        let g = if all[0] <= all[1].min(all[2]) {
+            0
+        } else if all[1] <= all[2] {
+            1
+        } else {
+            2
+        };
+        (g, all[g])
+    }
+
+    #[inline(always)]
+    fn take(&mut self, g: usize) {
+        self.at[g] += 1;
+        let i = self.at[g];
+        for k in [0..2, 2..3, 3..4][g].clone() {
+            let (now, before) = (self.sent[i].1[k], self.sent[i - 1].1[k]);
+            self.command[k] = if self.lost == 0.0 { now } else { now + self.lost * (before - now) };
+        }
+    }
+}
+
+/// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next, and
+/// what arrives is integrated exactly.
 #[inline(always)]
 pub fn actuator_response(
     p: &Extended<f64>,
@@ -32,61 +84,40 @@ pub fn actuator_response(
     x: &[f64],
     offset: f64,
 ) -> ActuatorResponse {
-    let late = extended::command_delays(p);
-    // Roll and pitch, yaw, and thrust arrive each at their time.
-    let late = [late[0] + offset, late[2] + offset, late[3]];
-    let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
-    let lost = model.acting(x, Role::CommandsLost);
     let n = record.time.len();
-    let mut out = ActuatorResponse {
-        command: Vec::with_capacity(n),
-        lag: Vec::with_capacity(n),
-        setpoint: Vec::with_capacity(n),
-    };
     let none = [f64::NAN; 4];
     let Some((first, begin)) = record.sent.first().copied() else {
         return ActuatorResponse { command: vec![none; n], lag: vec![0.0; n], setpoint: vec![(none, [0.0; 3]); n] };
     };
-    // What arrives on average where commands get lost.
-    let arrives = |i: usize, k: usize| {
-        let now = record.sent[i].1[k];
-        if i == 0 || lost == 0.0 { now } else { now + lost * (record.sent[i - 1].1[k] - now) }
-    };
-    let mut at = [0, 0, 0];
-    let (mut command, mut slope, mut sent) = (begin, [0.0; 3], begin);
-    let mut now = first;
+    let late = extended::command_delays(p);
+    let late = [late[0] + offset, late[2] + offset, late[3]];
+    let lost = model.acting(x, Role::CommandsLost);
+    let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
+    let mut arrivals = Arrivals { sent: &record.sent, late, lost, at: [0; 3], command: begin };
+    let mut out = ActuatorResponse::with_capacity(n);
+    let (mut command, mut slope, mut now) = (begin, [0.0; 3], first);
     for i in 0..n {
         let t = record.time[i] * stretch;
         if t < first {
-            out.command.push(none);
-            out.lag.push(f64::NAN);
-            out.setpoint.push((none, [0.0; 3]));
+            out.push(none, f64::NAN, (none, [0.0; 3]));
             continue;
         }
         let voltage = supplied(p, record, i);
         loop {
-            let due = |g: usize| record.sent.get(at[g] + 1).map_or(f64::INFINITY, |next| next.0 + late[g]);
-            let (g, next) = if due(0) <= due(1).min(due(2)) {
-                (0, due(0))
-            } else if due(1) <= due(2) {
-                (1, due(1))
-            } else {
-                (2, due(2))
-            };
+            let (g, next) = arrivals.next();
             let until = next.min(t);
             if until > now {
-                (command, slope) = extended::actuator_response(p, command, slope, sent, voltage, until - now);
+                (command, slope) =
+                    extended::actuator_response(p, command, slope, arrivals.command, voltage, until - now);
                 now = until;
             }
             if next > t {
                 break;
             }
-            at[g] += 1;
-            [0..2, 2..3, 3..4][g].clone().for_each(|k| sent[k] = arrives(at[g], k));
+            arrivals.take(g);
         }
-        out.command.push(command);
-        out.lag.push((0..3).map(|k| (sent[k] - command[k]).abs()).sum());
-        out.setpoint.push((sent, slope));
+        let sent = arrivals.command;
+        out.push(command, (0..3).map(|k| (sent[k] - command[k]).abs()).sum(), (sent, slope));
     }
     out
 }
