@@ -1,9 +1,9 @@
 //! Causes that have the same mean, told apart by what else they would leave.
 
 use super::fit;
+use super::lost::{Lost, lost_commands};
 use super::numbers::span;
 use super::problem::Problem;
-use super::random;
 use super::select::{Added, Selection};
 use crate::base::stats::mean;
 use crate::model::constants::CONTROL_S;
@@ -43,10 +43,10 @@ pub fn clocks(problem: &Problem, selection: &mut Selection) {
 }
 
 /// Lost commands and a short delay have the same mean: what single stick movements leave decides.
-pub fn chance(problem: &Problem, selection: &mut Selection) -> Option<random::Lost> {
+pub fn chance(problem: &Problem, selection: &mut Selection) -> Option<Lost> {
     let (dropout, delayed) = effects::twins(Evidence::SingleMovements)?;
-    let lost = random::lost_commands(problem, selection);
-    let are_lost = random::are_lost(&lost, dropout);
+    let lost = lost_commands(problem, selection);
+    let are_lost = lost.matters(dropout);
     let (x, free) = if are_lost {
         counted(selection, dropout, delayed, lost.share)
     } else if let Some(i) = selection.added.iter().position(|a| a.card.id == dropout.id) {

@@ -6,10 +6,11 @@ use super::cause::MOVES;
 use super::drift;
 use super::finding::{Drift, Finding, Status, Value};
 use super::fitted::Fitted;
+use super::gusts;
 use super::judge::{Judged, judge};
+use super::lost::Lost;
 use super::numbers::span;
 use super::predict::{PUSH, TURN};
-use super::random::{self, Lost};
 use super::select::Added;
 use super::structure::{PLACE, Structure};
 use crate::model::effects::{self, ResidualChannel, Role};
@@ -33,7 +34,7 @@ pub fn find(fitted: &Fitted, lost: Option<Lost>, structure: &[Structure]) -> Fou
     let placed = structure.iter().any(|s| s.along == Some(PLACE));
     if !placed {
         let forces = structure.iter().filter(|s| s.channel.starts_with("specific force")).map(|s| s.structure_rms);
-        findings.extend(random::gusts(fitted.problem, fitted.selection, forces.fold(0.0, f64::max)));
+        findings.extend(gusts::find(fitted.problem, fitted.selection, forces.fold(0.0, f64::max)));
     }
     let (drift, cause) = drift::find(fitted);
     findings.extend(cause);
