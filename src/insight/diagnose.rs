@@ -54,8 +54,8 @@ use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
 use finding::{Diagnosis, Finding, Residual, Status, Verdict};
-use findings::Found;
-use fitted::Fitted;
+use findings::Judgement;
+use fitted::FittedSelection;
 use model::Model;
 use problem::Problem;
 use record::FlightRecord;
@@ -100,8 +100,8 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     watch("judging", 0.85);
     let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
     let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
-    let fitted = Fitted::new(&problem, &selection);
-    let Found { mut findings, judged, drift, unexplained } = findings::find(&fitted, lost, &structure);
+    let fitted = FittedSelection::new(&problem, &selection);
+    let Judgement { mut findings, judged, drift, unexplained } = findings::find(&fitted, lost, &structure);
     watch("measuring the gain", 0.9);
     // What is only suspected is no part of the extended vehicle.
     let suspected: Vec<&str> = findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
@@ -122,7 +122,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         (true, false) => Verdict::Effects,
     };
     let (detectable, not_detectable) = plan::judge(&problem, &selection.reach);
-    let extended = extend::vehicle(&Fitted::new(&problem, kept), &findings);
+    let extended = extend::vehicle(&FittedSelection::new(&problem, kept), &findings);
     let diagnosis = Diagnosis {
         verdict,
         logs: problem.records.iter().map(|r| r.name.clone()).collect(),

@@ -1,4 +1,5 @@
-//! Cards say what their equations read and write: each input of a stage is moved, and what the effect makes of it watched.
+//! Cards say what their equations read and write: each input of a stage is moved, and what the effect makes of it is
+//! watched.
 
 use racer::model::effects::{
     self, Actuator, AerodynamicForces, BatteryLoad, BodyRates as Rates, COUNT, Card, CommandDelay, EffectValues,

@@ -1,4 +1,5 @@
-//! Whatever number changes beside whatever other: what the diagnosis computes again is all of the prediction that changes.
+//! Whatever number changes beside whatever other: what the diagnosis computes again is all of the prediction that
+//! changes.
 
 use crate::truth::Vehicle;
 use crate::truth::hidden::{Setting, Style, fly};

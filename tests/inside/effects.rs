@@ -1,4 +1,5 @@
-//! Effects beyond the compact model: each changes the flight as its equation says, in every precision, and hardly where it is hardly there.
+//! Effects beyond the compact model: each changes the flight as its equation says, in every precision, and hardly where
+//! it is hardly there.
 
 use racer::base::lane::Level;
 use racer::base::rng::{Philox, Stream};
@@ -109,8 +110,9 @@ fn apart(a: &State<f64>, b: &State<f64>) -> (f64, f64) {
     (largest(&a.position, &b.position, false), largest(&a.velocity, &b.velocity, false))
 }
 
-/// The extended model tends to the compact one as each effect tends to nothing: nearly to its steps of 2 ms, which are as long as its
-/// own, and to those of 10 ms as far as these may be off themselves (5 mm and 1 cm/s, as in the test of the compact model).
+/// The extended model tends to the compact one as each effect tends to nothing: nearly to its steps of 2 ms, which are
+/// as long as its own, and to those of 10 ms as far as these may be off themselves (5 mm and 1 cm/s, as in the test of
+/// the compact model).
 #[test]
 fn a_negligible_effect_is_none() {
     const STEPS: usize = 100;

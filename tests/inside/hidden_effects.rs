@@ -1,5 +1,5 @@
-//! Effects hidden in flights of the independent simulator have to be found, and nothing where nothing is. The benchmark of the same name
-//! (`cargo bench --bench hidden_effects`) does so hundreds of times.
+//! Effects hidden in flights of the independent simulator have to be found, and nothing where nothing is. The benchmark
+//! of the same name (`cargo bench --bench hidden_effects`) does so hundreds of times.
 
 use crate::truth::Vehicle;
 use crate::truth::effects::{Hidden, outside};
@@ -23,7 +23,8 @@ fn named(d: &Diagnosis) -> Vec<&Finding> {
     d.findings.iter().filter(|f| f.status != Status::Suspected).collect()
 }
 
-/// Hides effects of given sizes; all of them, and nothing else, have to be named, with the sizes within `within` of the truth.
+/// Hides effects of given sizes; all of them, and nothing else, have to be named, with the sizes within `within` of the
+/// truth.
 fn finds(seed: u64, effects: &[(&str, f64)], within: f64) {
     let vehicle = Vehicle::draw(seed);
     let mut rng = StdRng::seed_from_u64(seed);

@@ -5,8 +5,8 @@ use super::record::FlightRecord;
 use crate::model::dynamics::extended::{self, Extended};
 use crate::model::effects::Role;
 
-/// The filtered commands at every sample; by how much those of the rates lag, summed; what they go to, and how fast those of
-/// the rates change.
+/// The filtered commands at every sample; by how much those of the rates lag, summed; what they go to, and how fast
+/// those of the rates change.
 pub struct ActuatorResponse {
     pub command: Vec<[f64; 4]>,
     pub lag: Vec<f64>,
@@ -74,8 +74,8 @@ impl Arrivals<'_> {
     }
 }
 
-/// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next, and
-/// what arrives is integrated exactly.
+/// Filtered commands at every sample; the gyro's samples are `offset` seconds late. Commands are held until the next,
+/// and what arrives is integrated exactly.
 #[inline(always)]
 pub fn actuator_response(
     p: &Extended<f64>,

@@ -87,7 +87,7 @@ pub fn causes(problem: &Problem) -> Vec<&'static Card> {
     effects::cards().filter(can_be_tried).filter(|card| !in_base(card)).collect()
 }
 
-/// The columns of all directions; those that change nothing are left out.
+/// Candidates in all directions; those that change nothing are left out.
 pub fn candidates(problem: &Problem, whitener: &Whitener, point: &FitPoint, cards: &[&'static Card]) -> Vec<Candidate> {
     let mut all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
     if let Some(card) = cards.iter().find(|card| card.role == Role::ClockFast)
@@ -107,7 +107,7 @@ pub fn candidates(problem: &Problem, whitener: &Whitener, point: &FitPoint, card
     all.into_par_iter().filter_map(one).collect()
 }
 
-/// The columns after the last of `held` was added: recomputed where it moved in time or in voltage what they change,
+/// The candidates after the last of `held` was added: recomputed where it moved in time or in voltage what they change,
 /// and of the causes that were tied with it; else as they were.
 pub fn renewed(
     problem: &Problem,

@@ -3,7 +3,7 @@
 
 use super::finding::{Finding, Status, Value};
 use super::fit::{covariance, fit};
-use super::fitted::Fitted;
+use super::fitted::FittedSelection;
 use super::numbers::{DRAG, THRUST, span};
 use super::problem::ChannelValues;
 use crate::base::stats::NORMAL_95;
@@ -26,7 +26,7 @@ fn of_interest(k: usize) -> bool {
 }
 
 /// The effect whose absorption accounts for the move of thrust and drag.
-pub fn find(fitted: &Fitted) -> Option<Finding> {
+pub fn find(fitted: &FittedSelection) -> Option<Finding> {
     let problem = fitted.problem;
     let point = &fitted.selection.point;
     let absorbed = |card: &&Card| card.absorbed_by.contains(&CompactNumber::Thrust);
@@ -62,7 +62,7 @@ struct Account {
 
 /// The move of the numbers of thrust and drag, and what it does to the residuals.
 struct Moved<'a> {
-    fitted: &'a Fitted<'a>,
+    fitted: &'a FittedSelection<'a>,
     /// Their places among the fitted numbers.
     main: Vec<usize>,
     by: DVector<f64>,
@@ -74,7 +74,7 @@ struct Moved<'a> {
 }
 
 impl<'a> Moved<'a> {
-    fn new(fitted: &'a Fitted, sum: &DMatrix<f64>) -> Option<Self> {
+    fn new(fitted: &'a FittedSelection, sum: &DMatrix<f64>) -> Option<Self> {
         let (numbers, base) = (&fitted.problem.model.numbers, &fitted.problem.model.base);
         let (free, x) = (&fitted.selection.point.free, &fitted.selection.point.x);
         let own: Vec<usize> = (0..free.len()).collect();
@@ -117,7 +117,7 @@ impl<'a> Moved<'a> {
 }
 
 /// The finding of `best`, which `near` ones come close to.
-fn finding(fitted: &Fitted, best: &Account, near: Vec<&'static str>) -> Option<Finding> {
+fn finding(fitted: &FittedSelection, best: &Account, near: Vec<&'static str>) -> Option<Finding> {
     let card = best.card;
     let (size, sd) = instead(fitted, card, best.size)?;
     let p = &card.parameters[0];
@@ -136,7 +136,7 @@ fn finding(fitted: &Fitted, best: &Account, near: Vec<&'static str>) -> Option<F
 }
 
 /// Size and standard deviation of an effect that takes the place of all moves of thrust and drag, near `size`.
-fn instead(fitted: &Fitted, card: &Card, size: f64) -> Option<(f64, f64)> {
+fn instead(fitted: &FittedSelection, card: &Card, size: f64) -> Option<(f64, f64)> {
     let (problem, whitener) = (fitted.problem, &fitted.selection.whitener);
     let own = span(card).start;
     let mut x = fitted.selection.point.x.clone();

@@ -2,7 +2,7 @@
 
 use super::cause;
 use super::finding::{Drift, Finding};
-use super::fitted::Fitted;
+use super::fitted::FittedSelection;
 use super::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST};
 use crate::base::stats::NORMAL_95;
 
@@ -11,7 +11,7 @@ const MATERIAL: [f64; 5] = [0.05, 0.015, 0.02, 0.1, 0.2];
 /// Standard deviations that a change has to be.
 const SURE: f64 = 4.0;
 /// Numbers that differ from the base vehicle's, and a cause if one explains all of thrust's and drag's moves.
-pub fn find(fitted: &Fitted) -> (Vec<Drift>, Option<Finding>) {
+pub fn find(fitted: &FittedSelection) -> (Vec<Drift>, Option<Finding>) {
     let point = &fitted.selection.point;
     let model = &fitted.problem.model;
     let mut out = Vec::new();
@@ -63,7 +63,7 @@ pub fn find(fitted: &Fitted) -> (Vec<Drift>, Option<Finding>) {
     (out, cause)
 }
 
-fn voltage_moved(fitted: &Fitted) -> bool {
+fn voltage_moved(fitted: &FittedSelection) -> bool {
     let point = &fitted.selection.point;
     let k = THRUST.start + 5;
     let Some(i) = point.free.iter().position(|f| *f == k) else { return false };

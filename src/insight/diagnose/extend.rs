@@ -2,7 +2,7 @@
 //! well they are known.
 
 use super::finding::{Finding, Status};
-use super::fitted::Fitted;
+use super::fitted::FittedSelection;
 use super::numbers::span;
 use crate::model::effects::{self, MODEL};
 use crate::model::vehicle::Vehicle;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// The base vehicle with every named effect of the simulator. Effects of sensors and of chance are no part of a
 /// vehicle; what a change of the compact model's numbers already holds is not added a second time.
-pub fn vehicle(fitted: &Fitted, findings: &[Finding]) -> Vehicle {
+pub fn vehicle(fitted: &FittedSelection, findings: &[Finding]) -> Vehicle {
     let model = &fitted.problem.model;
     let point = &fitted.selection.point;
     let mut vehicle = model.vehicle_at(&point.x);

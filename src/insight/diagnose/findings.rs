@@ -5,7 +5,7 @@ use super::adequacy;
 use super::cause::MOVES;
 use super::drift;
 use super::finding::{Drift, Finding, Status, Value};
-use super::fitted::Fitted;
+use super::fitted::FittedSelection;
 use super::gusts;
 use super::judge::{Judged, judge};
 use super::lost::Lost;
@@ -16,7 +16,7 @@ use super::structure::{PLACE, Structure};
 use crate::model::effects::{self, ResidualChannel, Role};
 
 /// What was found.
-pub struct Found {
+pub struct Judgement {
     pub findings: Vec<Finding>,
     pub judged: Vec<Judged>,
     pub drift: Vec<Drift>,
@@ -24,7 +24,7 @@ pub struct Found {
 }
 
 /// Judges a selection that leaves `structure`, of flights that lose so many commands.
-pub fn find(fitted: &Fitted, lost: Option<Lost>, structure: &[Structure]) -> Found {
+pub fn find(fitted: &FittedSelection, lost: Option<Lost>, structure: &[Structure]) -> Judgement {
     let added = fitted.selection.added.iter().map(|a| judge(fitted, a)).filter(|j| j.material);
     let judged: Vec<Judged> = added.chain(constant_errors(fitted)).collect();
     let mut findings: Vec<Finding> = judged.iter().map(|j| j.finding.clone()).collect();
@@ -39,12 +39,12 @@ pub fn find(fitted: &Fitted, lost: Option<Lost>, structure: &[Structure]) -> Fou
     let (drift, cause) = drift::find(fitted);
     findings.extend(cause);
     let unexplained = adequacy::unexplained(structure, &findings, fitted.selection);
-    let mut found = Found { findings, judged, drift, unexplained };
+    let mut found = Judgement { findings, judged, drift, unexplained };
     found.doubt(structure, placed);
     found
 }
 
-impl Found {
+impl Judgement {
     /// What is left makes findings no more than suspected.
     fn doubt(&mut self, structure: &[Structure], placed: bool) {
         let all = self.findings.clone();
@@ -77,7 +77,7 @@ fn count(finding: &mut Finding, lost: &Lost) {
 }
 
 /// Constant errors of the IMU, which every fit allows for.
-fn constant_errors(fitted: &Fitted) -> Vec<Judged> {
+fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
     // Larger than what any such sensor has, by a share of the smallest size that is one.
     const SHARE: f64 = 0.8;
     let point = &fitted.selection.point;

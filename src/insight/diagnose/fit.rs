@@ -1,4 +1,5 @@
-//! Fitting numbers of the model to all flights: Gauss-Newton on whitened residuals, with derivatives that are used more than once.
+//! Fitting numbers of the model to all flights: Gauss-Newton on whitened residuals, with derivatives that are used more
+//! than once.
 
 use super::predict::CHANNELS;
 use super::problem::{ChannelValues, Predictions, Problem};
@@ -110,7 +111,8 @@ pub fn whitened_slopes(
     which.par_iter().map(|&k| whitener.apply(&problem.slope(state, x, k), &problem.rows)).collect()
 }
 
-/// The normal equations of the numbers `free` at `x`, from their columns and what is left, all whitened; `gram` is that of the columns.
+/// The normal equations of the numbers `free` at `x`, from their columns and what is left, all whitened; `gram` is that
+/// of the columns.
 fn normal<'a>(
     problem: &Problem,
     gram: &'a DMatrix<f64>,
@@ -156,7 +158,8 @@ fn descend(
     normal.descend(&at, Shorter::Halved(HALVINGS), before, squares).map(|(_, _, point)| point)
 }
 
-/// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken as they are there.
+/// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken
+/// as they are there.
 pub fn refit(problem: &Problem, whitener: &Whitener, point: &FitPoint, own: &[usize], x: &[f64]) -> FitPoint {
     // Rates and forces hardly know of each other: what the numbers do not touch stays as it is.
     let all = || own.iter().map(|&k| &problem.model.numbers[k]);
@@ -189,13 +192,13 @@ pub fn refit(problem: &Problem, whitener: &Whitener, point: &FitPoint, own: &[us
     at
 }
 
-/// Stretches of time that are also left out together, and the least number of such groups that tells anything: what is wrong for longer than a
-/// stretch is no new evidence in the next.
+/// Stretches of time that are also left out together, and the least number of such groups that tells anything: what is
+/// wrong for longer than a stretch is no new evidence in the next.
 const GROUP: usize = 5;
 const GROUPS: usize = 20;
 
-/// Covariance of the fitted numbers of `point` by leaving out one stretch of time after the other; wider where leaving out
-/// longer ones says so.
+/// Covariance of the fitted numbers of `point` by leaving out one stretch of time after the other; wider where leaving
+/// out longer ones says so.
 pub fn covariance(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> Option<DMatrix<f64>> {
     let n = point.free.len();
     let residual = whitener.apply(&point.residual, &problem.rows);

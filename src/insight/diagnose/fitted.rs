@@ -9,7 +9,7 @@ use crate::model::effects::Card;
 use nalgebra::DMatrix;
 
 /// Everything linear about the end of a selection.
-pub struct Fitted<'a> {
+pub struct FittedSelection<'a> {
     pub problem: &'a Problem,
     pub selection: &'a Selection,
     /// Of the fitted numbers.
@@ -18,7 +18,7 @@ pub struct Fitted<'a> {
     pub grams: Grams,
 }
 
-impl<'a> Fitted<'a> {
+impl<'a> FittedSelection<'a> {
     pub fn new(problem: &'a Problem, selection: &'a Selection) -> Self {
         let point = &selection.point;
         let residual = selection.whitener.apply(&point.residual, &problem.rows);

@@ -1,5 +1,5 @@
-//! Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both horizontal
-//! axes. They have no mean, and show in the variance.
+//! Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both
+//! horizontal axes. They have no mean, and show in the variance.
 
 use super::finding::{Finding, Value};
 use super::oscillation;
@@ -23,29 +23,29 @@ const LAGS: [usize; 2] = [6, 18];
 /// Gusts, where the forces' residual holds them; `structure_rms` of it is structure, m/s2.
 pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Option<Finding> {
     let card: &'static Card = effects::acting(Role::RandomForce).next()?;
-    let memory = Memory::of(problem, selection)?;
-    let (sigma, tau) = (memory.sigma(), memory.tau());
+    let common = Autocovariance::of(problem, selection)?;
+    let (sigma, tau) = (common.sigma(), common.tau());
     let swings = !oscillation::find(problem, &selection.point.residual).is_empty();
-    if memory.stretches() < REPLICATED
+    if common.stretches() < REPLICATED
         || swings
         || sigma < LEAST_GUST
-        || !memory.is_balanced()
-        || !memory.lasts()
+        || !common.is_balanced()
+        || !common.lasts()
         || tau < 0.05
         || structure_rms > 0.7 * sigma
     {
         return None;
     }
-    let (near, far) = (memory.near(), memory.far());
-    let half = NORMAL_95 * 0.5 * sigma * memory.spread(0) / near;
-    let relative = (memory.spread(0) / near).hypot(memory.spread(1) / far);
+    let (near, far) = (common.near(), common.far());
+    let half = NORMAL_95 * 0.5 * sigma * common.spread(0) / near;
+    let relative = (common.spread(0) / near).hypot(common.spread(1) / far);
     let half_tau = NORMAL_95 * tau * tau / apart_s() * relative;
     let value = |v: f64, h: f64, unit: &str| Value { value: v, low: v - h, high: v + h, unit: unit.into() };
     let sizes = card.parameters.iter().zip([(sigma, half), (tau, half_tau)]);
     Some(Finding {
         channel: "specific force x",
         parameters: sizes.map(|(p, (v, h))| (p.name.to_string(), value(v, h, p.unit))).collect(),
-        stretches: memory.stretches(),
+        stretches: common.stretches(),
         impact: sigma * (2.0 * tau.min(1.0) * 1.0).sqrt(),
         ..Finding::of(card)
     })
@@ -57,7 +57,7 @@ fn apart_s() -> f64 {
 }
 
 /// What the horizontal residuals have in common with themselves at each of [`LAGS`].
-struct Memory {
+struct Autocovariance {
     /// By axis and lag, m2/s4.
     lags: [[f64; 2]; 2],
     /// Stretches that agree on the first lag, by axis.
@@ -66,7 +66,7 @@ struct Memory {
     blocks: Vec<[f64; 2]>,
 }
 
-impl Memory {
+impl Autocovariance {
     fn of(problem: &Problem, selection: &Selection) -> Option<Self> {
         let mut out = Self { lags: [[0.0; 2]; 2], agree: [0.0; 2], blocks: vec![[0.0; 2]; problem.blocks] };
         for axis in 0..2 {

@@ -1,4 +1,5 @@
-//! Open loop: from where the flight was, with nothing but the logged commands, how far off is the simulation a moment later?
+//! Open loop: from where the flight was, with nothing but the logged commands, how far off is the simulation a moment
+//! later?
 
 use super::model::Model;
 use super::predict::Predicted;

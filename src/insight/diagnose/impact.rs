@@ -1,6 +1,6 @@
 //! What an effect does to a flight.
 
-use super::fitted::Fitted;
+use super::fitted::FittedSelection;
 use super::horizon;
 use super::problem::ChannelValues;
 use crate::base::stats::mean;
@@ -9,7 +9,7 @@ use crate::model::effects::{Card, EffectKind};
 
 /// How far apart simulations with and without the effect are after a second, m/s; for sensors, what the error
 /// integrates to.
-pub fn impact(fitted: &Fitted, card: &Card, without: &[f64], change: &ChannelValues) -> f64 {
+pub fn impact(fitted: &FittedSelection, card: &Card, without: &[f64], change: &ChannelValues) -> f64 {
     let rms = |c: usize| mean(&change[c].iter().map(|x| x * x).collect::<Vec<_>>()).sqrt();
     let sensors: f64 = (0..3)
         .map(|k| rms(k) * 0.5 * GRAVITY_M_S2)

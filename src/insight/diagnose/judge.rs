@@ -1,7 +1,7 @@
 //! From the fit to findings: evidence, replication, size and what is left.
 
 use super::finding::{Finding, Status};
-use super::fitted::Fitted;
+use super::fitted::FittedSelection;
 use super::impact::impact;
 use super::numbers::span;
 use super::predict::{CHANNELS, kind};
@@ -28,7 +28,7 @@ pub struct Judged {
 }
 
 /// Judges one added effect.
-pub fn judge(fitted: &Fitted, added: &Added) -> Judged {
+pub fn judge(fitted: &FittedSelection, added: &Added) -> Judged {
     let card = added.card;
     let (x, change) = without(fitted, card);
     let point = fitted.point();
@@ -63,7 +63,11 @@ pub fn judge(fitted: &Fitted, added: &Added) -> Judged {
 
 /// Shares of the residual power of its channels that go with an effect, which changes the prediction by `change`; and
 /// the channel of the largest.
-fn explained(fitted: &Fitted, card: &Card, change: &ChannelValues) -> (BTreeMap<&'static str, f64>, &'static str) {
+fn explained(
+    fitted: &FittedSelection,
+    card: &Card,
+    change: &ChannelValues,
+) -> (BTreeMap<&'static str, f64>, &'static str) {
     let residual = &fitted.point().residual;
     let power = |v: &[f64]| mean(&v.iter().map(|x| x * x).collect::<Vec<_>>());
     let mut explained = BTreeMap::new();
@@ -85,7 +89,7 @@ fn explained(fitted: &Fitted, card: &Card, change: &ChannelValues) -> (BTreeMap<
 
 /// Change of the prediction that the effect makes, by channel, beside what the other numbers could take over, in
 /// physical units; and the numbers without it.
-fn without(fitted: &Fitted, card: &Card) -> (Vec<f64>, ChannelValues) {
+fn without(fitted: &FittedSelection, card: &Card) -> (Vec<f64>, ChannelValues) {
     let own = fitted.places(card);
     let rest = fitted.rest(&own);
     let mut plain = fitted.point().x.clone();

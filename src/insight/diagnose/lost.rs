@@ -1,5 +1,5 @@
-//! Lost commands: their mean is that of a delay, and their variance that of nothing else. Large stick movements are looked
-//! at one by one: of each, how much of the error is there that its loss would leave.
+//! Lost commands: their mean is that of a delay, and their variance that of nothing else. Large stick movements are
+//! looked at one by one: of each, how much of the error is there that its loss would leave.
 
 use super::numbers::TAU;
 use super::predict::RATE;
@@ -25,8 +25,8 @@ pub struct Lost {
     /// Movements whose whole error is there, and those with about half of it: a loss is all or nothing.
     pub whole: usize,
     pub half: usize,
-    /// Movements that were answered before they were due: a loss never is, a link whose delay varies is as often early as
-    /// late.
+    /// Movements that were answered before they were due: a loss never is, a link whose delay varies is as often early
+    /// as late.
     pub early: usize,
 }
 
@@ -50,7 +50,7 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
     for k in 0..3 {
         let (rows, residual) = (&problem.rows[RATE + k], &selection.point.residual[RATE + k]);
         let noise = robust_sd(residual);
-        let axis = Axis { k, noise, tau: x[TAU.start + k], late: late[k], max_rate: p.compact.max_rate[k] };
+        let axis = StickAxis { k, noise, tau: x[TAU.start + k], late: late[k], max_rate: p.compact.max_rate[k] };
         for (f, record) in problem.records.iter().enumerate() {
             let mut by_bin = vec![f64::NAN; record.bins.len()];
             let own = rows.iter().zip(residual).filter(|(row, _)| row.flight as usize == f);
@@ -60,7 +60,7 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
             answers.extend(record.sent.windows(3).filter_map(|three| axis.answer(three, &middles, &by_bin)));
         }
     }
-    let count = |of: &dyn Fn(&Answer) -> bool| answers.iter().filter(|a| of(a)).count();
+    let count = |of: &dyn Fn(&StickAnswer) -> bool| answers.iter().filter(|a| of(a)).count();
     let whole = count(&|a| (0.7..1.4).contains(&a.missing));
     let half = count(&|a| (0.3..0.7).contains(&a.missing));
     let n = answers.len().max(1) as f64;
@@ -70,14 +70,14 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
 }
 
 /// How a movement was answered.
-struct Answer {
+struct StickAnswer {
     /// Share of the error of a loss that is there.
     missing: f64,
     early: bool,
 }
 
 /// One axis of the rates.
-struct Axis {
+struct StickAxis {
     k: usize,
     /// Of its residual, rad/s.
     noise: f64,
@@ -87,10 +87,10 @@ struct Axis {
     max_rate: f64,
 }
 
-impl Axis {
-    /// How the last but one of three commands was answered, by the residual of bins around `middles`; none where its loss
-    /// would not show.
-    fn answer(&self, three: &[(f64, [f64; 4])], middles: &[f64], by_bin: &[f64]) -> Option<Answer> {
+impl StickAxis {
+    /// How the last but one of three commands was answered, by the residual of bins around `middles`; none where its
+    /// loss would not show.
+    fn answer(&self, three: &[(f64, [f64; 4])], middles: &[f64], by_bin: &[f64]) -> Option<StickAnswer> {
         let &[before, now, next] = three else { return None };
         let change = (next.1[self.k] - now.1[self.k]) * self.max_rate;
         // What the loss of the command before would leave reaches into this one.
@@ -119,6 +119,6 @@ impl Axis {
             most += shape * shape;
         }
         let early = most > (EARLY_CLEAR * self.noise).powi(2) && ahead > EARLY * most;
-        Some(Answer { missing: along / square, early })
+        Some(StickAnswer { missing: along / square, early })
     }
 }

@@ -1,6 +1,6 @@
 //! In how many stretches of flight an effect shows.
 
-use super::fitted::Fitted;
+use super::fitted::FittedSelection;
 use super::score::score;
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
@@ -35,7 +35,7 @@ impl Replicated {
 /// How many stretches of flight agree on the effect. Either all do a little (the robust score of leaving it out counts
 /// them), or a few do by themselves, beyond two standard deviations, less those that contradict; with how sure all
 /// together are.
-pub fn stretches(fitted: &Fitted, card: &Card) -> Replicated {
+pub fn stretches(fitted: &FittedSelection, card: &Card) -> Replicated {
     let own = fitted.places(card);
     if own.is_empty() {
         return Replicated::default();

@@ -1,14 +1,14 @@
 //! An effect's parameters as people read them.
 
 use super::finding::Value;
-use super::fitted::Fitted;
+use super::fitted::FittedSelection;
 use super::numbers::{TAU, span};
 use crate::base::stats::NORMAL_95;
 use crate::model::effects::Card;
 use std::collections::BTreeMap;
 
 /// The effect's parameters as people read them, with intervals.
-pub fn parameters(fitted: &Fitted, card: &Card) -> BTreeMap<String, Value> {
+pub fn parameters(fitted: &FittedSelection, card: &Card) -> BTreeMap<String, Value> {
     let at = span(card);
     let x = &fitted.point().x;
     let places: Vec<usize> = fitted.places(card);

@@ -1,5 +1,5 @@
-//! Is anything left? What of a residual an additive model of many signals predicts on stretches of time that it has not seen, with what that
-//! lines up with; and how much of it its own past predicts.
+//! Is anything left? What of a residual an additive model of many signals predicts on stretches of time that it has not
+//! seen, with what that lines up with; and how much of it its own past predicts.
 
 use super::folds::{FOLDS, fold};
 use super::predict::{CHANNELS, FORCE, RATE, VOLTAGE};
@@ -36,7 +36,8 @@ pub struct Structure {
     pub rms: f64,
     pub structure_rms: f64,
     pub coloured_rms: f64,
-    /// The signal that explains most of it, with the share that it explains, and the curve: level of the signal, mean residual, its standard error.
+    /// The signal that explains most of it, with the share that it explains, and the curve: level of the signal, mean
+    /// residual, its standard error.
     pub along: Option<&'static str>,
     pub along_share: f64,
     pub curve: Vec<[f64; 3]>,

@@ -111,7 +111,7 @@ impl Trials<'_> {
         Trial { card, point: best, gain }
     }
 
-    /// Fitted from the numbers `x` with the effect at `shrink` times the sizes `start`.
+    /// FittedSelection from the numbers `x` with the effect at `shrink` times the sizes `start`.
     fn fitted(&self, x: &[f64], card: &Card, start: &[(usize, f64)], shrink: f64) -> FitPoint {
         let own: Vec<usize> = span(card).collect();
         let mut x = x.to_vec();

@@ -1,5 +1,5 @@
-//! Noise of each channel: an autoregressive model of what is left when everything that could explain it is taken off, and weights that outliers
-//! do not rule.
+//! Noise of each channel: an autoregressive model of what is left when everything that could explain it is taken off,
+//! and weights that outliers do not rule.
 
 use super::predict::CHANNELS;
 use super::problem::{ChannelValues, ResidualRow};
@@ -9,8 +9,8 @@ use crate::insight::estimate::robust::{capped, huber};
 
 /// Order of the autoregressive model: rates and forces, turns and pushes, voltage.
 const ORDER: [usize; 3] = [8, 3, 4];
-/// Whitened residuals beyond so many standard deviations weigh less (Huber). Wider than identification's 3: an effect that is rarely flown
-/// stands out of the noise as outliers do.
+/// Whitened residuals beyond so many standard deviations weigh less (Huber). Wider than identification's 3: an effect
+/// that is rarely flown stands out of the noise as outliers do.
 const HUBER: f64 = 3.5;
 /// Rows are capped at so many standard deviations before their memory is fitted.
 const CAP: f64 = 6.0;
@@ -37,8 +37,8 @@ fn order(c: usize) -> usize {
 }
 
 impl Whitener {
-    /// Scales channels only: before anything is known of their noise. An autoregression of residuals that still hold a slow effect would
-    /// take the effect for noise.
+    /// Scales channels only: before anything is known of their noise. An autoregression of residuals that still hold a
+    /// slow effect would take the effect for noise.
     pub fn plain(residual: &ChannelValues, rows: &[Vec<ResidualRow>; CHANNELS]) -> Self {
         let filter = std::array::from_fn(|c| (Vec::new(), 1.0 / robust_sd(&residual[c]).max(1e-12)));
         let weigh = |c: usize| if rows[c].len() < LEAST_ROWS { 0.0 } else { 1.0 };

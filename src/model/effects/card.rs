@@ -38,12 +38,12 @@ pub struct Card {
     /// What a pilot flies to tell it from its rivals, and the manoeuvres that `racer fly --pilot` flies for it.
     pub manoeuvre: (&'static str, &'static [&'static str]),
     /// The parameters as people read them, where they differ from those of the equation.
-    pub shown: Option<Shown>,
+    pub shown: Option<ShownParameters>,
 }
 
 /// From the equation's parameters (and the time constants of the roll rate and of the thrust, s) to what people read:
 /// name, value, unit.
-pub type Shown = fn(&[f64], [f64; 2]) -> Vec<(&'static str, f64, &'static str)>;
+pub type ShownParameters = fn(&[f64], [f64; 2]) -> Vec<(&'static str, f64, &'static str)>;
 
 impl Card {
     /// What most effects have in common.
