@@ -17,8 +17,8 @@ fn an_effect_is_named_in_its_file_and_in_the_list_only() {
         for (i, line) in read(&path).lines().enumerate() {
             let line = line.split("//").next().unwrap_or_default();
             for id in identifiers.iter().filter(|id| line.contains(&format!("\"{id}\""))) {
-                // A card names its rivals.
-                if !inside {
+                // A card names its rivals; a log format has names of its own.
+                if !inside && !path.starts_with(top().join("src/flight")) {
                     found.push(format!("{}:{}: {id}", shown(&path), i + 1));
                 }
             }

@@ -100,7 +100,7 @@ impl Check for Extension {
         for key in &self.uncertain {
             let sized = |(effect, name): (&str, &str)| self.sizes.get(effect).is_some_and(|p| p.contains_key(name));
             let known = key.split_once('.').is_some_and(sized);
-            Invalid::unless(known, "uncertain", key, "a parameter among the sizes, such as axial_inflow.k", "")?;
+            Invalid::unless(known, "uncertain", key, "one of the sizes, as effect.parameter", "")?;
         }
         let square = self.covariance.len() == n && self.covariance.iter().all(|row| row.len() == n);
         Invalid::unless(
