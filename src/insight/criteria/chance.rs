@@ -25,11 +25,7 @@ criteria! {
     LOST_OVER_HALF = 2.0, Assumed(UNRECORDED);
     /// So many times as many whole losses as early answers, for a link whose delay varies has both.
     LOST_OVER_EARLY = 2.0, Assumed(UNRECORDED);
-    /// Share of lost commands that matters, in small typical sizes.
-    LOST_MATTERS = 0.5, Assumed("as of any other effect");
 
-    /// Stretches of flight that have to agree on the memory of gusts.
-    GUST_STRETCHES = 15.0, Assumed(UNRECORDED);
     /// The weakest quarter of the flight has this share of the strongest, for the air is as restless early as late.
     GUST_LASTING = 0.1, Assumed(UNRECORDED);
     /// The weaker horizontal axis has this share of the stronger.

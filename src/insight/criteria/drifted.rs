@@ -21,8 +21,6 @@ criteria! {
     MOVED_VOLTAGE = 0.1, Assumed("randomisation covers less");
     /// Share of the whole move that an effect has to account for to be named as its cause.
     CAUSE_ACCOUNTS = 0.9, Assumed(UNRECORDED);
-    /// Size of such a cause that matters, in small typical sizes.
-    CAUSE_MATTERS = 0.5, Assumed("as of any other effect");
     /// So many times what the best leaves of the move is left by causes that are a tie with it.
     CAUSE_TIE = 2.0, Assumed(UNRECORDED);
     /// And so much of the move besides.

@@ -5,46 +5,33 @@ use super::oscillation;
 use super::select::Selection;
 use super::structure::{NAMES, Structure};
 use crate::base::stats::mean;
+use crate::insight::criteria::complete::{
+    ABOUT_SHARE, ADEQUATE_RATIO, CHANGING_SHARE, LEFT_OF_EXPLAINED, LEFT_OF_NOISE, LINED_UP_SHARE, MEMORY_RATIO,
+    SMALL_BESIDE,
+};
+use crate::insight::criteria::evident::EXPLAINS_ANYTHING;
+use crate::insight::criteria::material::{IDLE_FORCE, IDLE_RATE, IDLE_VOLTAGE};
 use crate::model::effects::{self, EffectKind, Role};
-
-/// Structure that nobody needs to care about, as a root mean square: rad/s, m/s2, V.
-const IDLE: [f64; 3] = [0.025, 0.08, 0.02];
-/// Structure beside the noise, and beside what the findings explain of the same channel, that is called unexplained.
-const LEFT_OF_NOISE: f64 = 0.15;
-const LEFT_OF_EXPLAINED: f64 = 0.2;
-/// Structure that lines up with a signal counts from this share of those sizes on.
-const SURER: f64 = 0.37;
-/// What a finding explains has to be so many times the structure that is left.
-const ADEQUATE: f64 = 1.5;
-/// What has a memory, where it is unexplained, may be so many times what a finding explains; measured flights are never
-/// white.
-const MEMORY: f64 = 3.0;
-/// Share of what is unexplained that goes with time from which on a finding is not the same early and late.
-const CHANGES: f64 = 0.2;
-/// What explains less than this share of what the largest finding of its channel does is small beside it.
-const BESIDE: f64 = 0.05;
-/// Share of a channel besides its own from which on a finding is about it.
-const ABOUT: f64 = 0.05;
 
 /// Channels in which structure is left that matters, beside the noise and beside what the findings explain.
 pub fn unexplained(structure: &[Structure], findings: &[Finding], selection: &Selection) -> Vec<Structure> {
     let gusts = findings.iter().any(|f| f.has(Role::RandomForce));
     let one = |s: &&Structure| {
         let Some(c) = NAMES.iter().position(|(name, _)| *name == s.channel) else { return false };
-        let idle = IDLE[if c < 3 {
-            0
+        let idle = if c < 3 {
+            IDLE_RATE.get()
         } else if c < 6 {
-            1
+            IDLE_FORCE.get()
         } else {
-            2
-        }];
+            IDLE_VOLTAGE.get()
+        };
         let before = mean(&selection.base.residual[c].iter().map(|r| r * r).collect::<Vec<_>>());
         let explained = (before - s.rms * s.rms).max(0.0).sqrt();
         let gusty = gusts && (3..6).contains(&c);
         // What lines up with a signal is surer than what only has a memory.
-        let surer = if gusty { 1.0 } else { SURER };
+        let surer = if gusty { 1.0 } else { LINED_UP_SHARE.get() };
         let left = (s.structure_rms / surer).max(if gusty { 0.0 } else { s.coloured_rms });
-        left > idle && left > LEFT_OF_NOISE * s.rms && left > LEFT_OF_EXPLAINED * explained
+        left > idle && left > LEFT_OF_NOISE.get() * s.rms && left > LEFT_OF_EXPLAINED.get() * explained
     };
     structure.iter().filter(one).cloned().collect()
 }
@@ -59,12 +46,12 @@ pub fn doubt(
 ) -> Option<String> {
     let explained = |s: &Structure| {
         let share = finding.explained.get(s.channel)?.min(0.999_999);
-        (share > if s.channel == finding.channel { 1e-3 } else { ABOUT })
+        (share > if s.channel == finding.channel { EXPLAINS_ANYTHING.get() } else { ABOUT_SHARE.get() })
             .then(|| s.rms * (share / (1.0 - share)).sqrt())
     };
     let more = |s: &Structure| format!("more structure remains in {} than it explains", s.channel);
     if let Some(left) = structure.iter().find(|s| s.channel == finding.channel)
-        && explained(left).is_some_and(|explained| left.structure_rms > explained / ADEQUATE)
+        && explained(left).is_some_and(|explained| left.structure_rms > explained / ADEQUATE_RATIO.get())
     {
         return Some(more(left));
     }
@@ -74,7 +61,7 @@ pub fn doubt(
     // Where the largest cause has not quite the right form, small ones make up for it.
     let odds = |f: &Finding| f.explained.get(finding.channel).map_or(0.0, |s| s / (1.0 - s.min(0.999_999)));
     let largest = findings.iter().max_by(|a, b| odds(a).total_cmp(&odds(b)));
-    if let Some(largest) = largest.filter(|l| odds(finding) < BESIDE * odds(l))
+    if let Some(largest) = largest.filter(|l| odds(finding) < SMALL_BESIDE.get() * odds(l))
         && unexplained.iter().any(|s| s.channel == finding.channel)
     {
         return Some(format!("small beside {}, where structure remains: it may make up for its form", largest.name));
@@ -82,15 +69,17 @@ pub fn doubt(
     // What swings pulls like a drag that comes late.
     let drag = effects::card(finding.effect).is_some_and(|card| card.kind == EffectKind::Drag);
     let most = structure.iter().filter_map(explained).fold(0.0, f64::max);
-    let swing = |s: &&Structure| s.along.is_some_and(oscillation::is_swing) && s.structure_rms > most / MEMORY;
+    let swing =
+        |s: &&Structure| s.along.is_some_and(oscillation::is_swing) && s.structure_rms > most / MEMORY_RATIO.get();
     if let Some(left) = unexplained.iter().find(swing).filter(|_| drag) {
         return Some(format!("something swings in {}, which looks like drag too", left.channel));
     }
     unexplained.iter().filter_map(|s| Some((s, explained(s)?))).find_map(|(left, explained)| {
-        if left.channel == finding.channel && left.coloured_rms > MEMORY * explained {
+        if left.channel == finding.channel && left.coloured_rms > MEMORY_RATIO.get() * explained {
             return Some(more(left));
         }
-        let with_time = left.along.is_some_and(|along| along.ends_with("time") && left.along_share > CHANGES);
+        let with_time =
+            left.along.is_some_and(|along| along.ends_with("time") && left.along_share > CHANGING_SHARE.get());
         with_time.then(|| format!("what it explains in {} changes during the flight", left.channel))
     })
 }

@@ -4,6 +4,7 @@ use super::fit::FitPoint;
 use super::numbers::{BEGIN, DISCHARGE, span};
 use super::problem::{ChannelValues, Problem};
 use super::whiten::Whitener;
+use crate::insight::criteria::evident::SKEW_TRIED;
 use crate::model::effects::{self, Card, EffectKind, Quantity, Role, are_rivals};
 use rayon::prelude::*;
 
@@ -92,7 +93,7 @@ pub fn candidates(problem: &Problem, whitener: &Whitener, point: &FitPoint, card
     let mut all: Vec<Direction> = cards.iter().flat_map(|card| directions(card)).collect();
     if let Some(card) = cards.iter().find(|card| card.role == Role::ClockFast)
         && let Some(skew) = super::skew::estimate(problem, &point.state, &point.residual)
-        && skew.abs() > 0.5 * card.parameters[0].typical[0]
+        && skew.abs() > SKEW_TRIED.get() * card.parameters[0].typical[0]
     {
         // Nothing else would come near.
         all.retain(|d| d.card.id != card.id);

@@ -7,16 +7,13 @@ use super::fitted::FittedSelection;
 use super::numbers::{DRAG, THRUST, span};
 use super::problem::ChannelValues;
 use crate::base::stats::NORMAL_95;
+use crate::insight::criteria::drifted::{CAUSE_ACCOUNTS, CAUSE_TIE, CAUSE_TIE_SHARE, MOVED_DEVIATIONS};
+use crate::insight::criteria::material::MATERIAL_SIZE;
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use crate::model::effects::{self, Card, CompactNumber};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
-
-/// Standard deviations that a change has to be.
-const SURE: f64 = 4.0;
-/// Share of the whole move that an effect has to account for to be named as its cause.
-const ACCOUNTS: f64 = 0.9;
 
 /// What such an effect explains.
 pub const MOVES: &str = "moves of thrust and drag against the base vehicle";
@@ -45,10 +42,10 @@ pub fn find(fitted: &FittedSelection) -> Option<Finding> {
     let mut found: Vec<Account> = visible.filter_map(|c| moved.account(cards[c], &grams.sum, c)).collect();
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     let best = found.first()?;
-    if best.share < ACCOUNTS || moved.in_proportion() > best.share {
+    if best.share < CAUSE_ACCOUNTS.get() || moved.in_proportion() > best.share {
         return None;
     }
-    let close = |other: &&Account| 1.0 - other.share < 2.0 * (1.0 - best.share) + 0.003;
+    let close = |other: &&Account| 1.0 - other.share < CAUSE_TIE.get() * (1.0 - best.share) + CAUSE_TIE_SHARE.get();
     let near: Vec<&'static str> = found.iter().skip(1).filter(close).map(|other| other.card.id).collect();
     finding(fitted, best, near)
 }
@@ -101,7 +98,8 @@ impl<'a> Moved<'a> {
         let share = size * size * norm / self.energy.max(1e-300);
         let covariance = Grams::pick(&self.fitted.covariance, &self.main, &self.main);
         let sd = ((weight.transpose() * covariance * &weight)[(0, 0)]).max(0.0).sqrt() / norm;
-        let sure = size.abs() > 0.5 * card.parameters[0].typical[0] && size.abs() > SURE * sd;
+        let least = MATERIAL_SIZE.get() * card.parameters[0].typical[0];
+        let sure = size.abs() > least && size.abs() > MOVED_DEVIATIONS.get() * sd;
         sure.then_some(Account { card, share, size })
     }
 

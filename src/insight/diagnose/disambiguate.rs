@@ -6,13 +6,9 @@ use super::numbers::span;
 use super::problem::Problem;
 use super::select::{Added, Selection};
 use crate::base::stats::mean;
+use crate::insight::criteria::rival::{LOST_DELAY, SAME_DELAY_S, SAME_DELAY_SHARE, SAME_LAG_SHARE};
 use crate::model::constants::CONTROL_S;
 use crate::model::effects::{self, Card, Evidence, Role};
-
-/// Agreement of the two times, s, and as a share.
-const SAME: [f64; 2] = [6e-4, 0.05];
-/// And of a lag of the velocity that comes from it.
-const LAG: f64 = 0.5;
 
 /// Where the first number of an effect is.
 fn at(card: &Card) -> usize {
@@ -29,7 +25,7 @@ pub fn clocks(problem: &Problem, selection: &mut Selection) {
     let mut x = selection.point.x.clone();
     let late = x[at(delayed)] + x[at(stamped)];
     let both = selection.added.iter().filter(|a| is_one(a)).count() > 1;
-    if moved == 0.0 || both || (late - moved).abs() > SAME[0] + SAME[1] * moved.abs() {
+    if moved == 0.0 || both || (late - moved).abs() > SAME_DELAY_S.get() + SAME_DELAY_SHARE.get() * moved.abs() {
         return;
     }
     (x[at(delayed)], x[at(stamped)]) = (0.0, late);
@@ -38,7 +34,9 @@ pub fn clocks(problem: &Problem, selection: &mut Selection) {
     free.push(at(stamped));
     selection.added[i] = Added { card: stamped, ties: Vec::new() };
     // The odometry was moved to a gyro that was late itself: its velocity seems late by as much, and is none.
-    selection.added.retain(|a| a.card.role != Role::VelocityLag || (x[at(a.card)] / moved - 1.0).abs() > LAG);
+    selection
+        .added
+        .retain(|a| a.card.role != Role::VelocityLag || (x[at(a.card)] / moved - 1.0).abs() > SAME_LAG_SHARE.get());
     selection.point = fit::fit(problem, &selection.whitener, &x, &free);
 }
 
@@ -64,7 +62,7 @@ fn counted(selection: &mut Selection, dropout: &'static Card, delayed: &Card, sh
     let mut x = selection.point.x.clone();
     let mut free = selection.point.free.clone();
     // A delay that lost commands account for is none.
-    let explained = |a: &Added| a.card.id == delayed.id && x[at(a.card)] < 3.0 * share * CONTROL_S;
+    let explained = |a: &Added| a.card.id == delayed.id && x[at(a.card)] < LOST_DELAY.get() * share * CONTROL_S;
     let gone: Vec<Added> =
         selection.added.iter().filter(|a| explained(a) || a.card.id == dropout.id).cloned().collect();
     for a in &gone {

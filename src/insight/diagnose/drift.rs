@@ -5,11 +5,10 @@ use super::finding::{Drift, Finding};
 use super::fitted::FittedSelection;
 use super::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST};
 use crate::base::stats::NORMAL_95;
+use crate::insight::criteria::drifted::{
+    MOVED_DEVIATIONS, MOVED_DISCHARGE, MOVED_DRAG, MOVED_RATE, MOVED_THRUST, MOVED_TIME_CONSTANT, MOVED_VOLTAGE,
+};
 
-/// Relative change below which nobody cares: time constants, rates, thrust, drag, discharge.
-const MATERIAL: [f64; 5] = [0.05, 0.015, 0.02, 0.1, 0.2];
-/// Standard deviations that a change has to be.
-const SURE: f64 = 4.0;
 /// Numbers that differ from the base vehicle's, and a cause if one explains all of thrust's and drag's moves.
 pub fn find(fitted: &FittedSelection) -> (Vec<Drift>, Option<Finding>) {
     let point = &fitted.selection.point;
@@ -18,7 +17,7 @@ pub fn find(fitted: &FittedSelection) -> (Vec<Drift>, Option<Finding>) {
     let place = |k: usize| point.free.iter().position(|f| *f == k);
     let mut add = |name: &str, unit, base: f64, value: f64, sd: f64, material: f64, scale: f64| {
         let change = value - base;
-        if change.abs() > SURE * sd && change.abs() > material * base.abs() {
+        if change.abs() > MOVED_DEVIATIONS.get() * sd && change.abs() > material * base.abs() {
             let half = NORMAL_95 * sd * scale;
             let value = value * scale;
             out.push(Drift {
@@ -32,10 +31,10 @@ pub fn find(fitted: &FittedSelection) -> (Vec<Drift>, Option<Finding>) {
         }
     };
     for (range, material, scale, unit) in [
-        (TAU, MATERIAL[0], 1e3, "ms"),
-        (MAX_RATE, MATERIAL[1], 1f64.to_degrees(), "deg/s"),
-        (DRAG, MATERIAL[3], 1.0, "1/m"),
-        (DISCHARGE..DISCHARGE + 1, MATERIAL[4], 60.0, "V/min"),
+        (TAU, MOVED_TIME_CONSTANT.get(), 1e3, "ms"),
+        (MAX_RATE, MOVED_RATE.get(), 1f64.to_degrees(), "deg/s"),
+        (DRAG, MOVED_DRAG.get(), 1.0, "1/m"),
+        (DISCHARGE..DISCHARGE + 1, MOVED_DISCHARGE.get(), 60.0, "V/min"),
     ] {
         for k in range {
             let Some(i) = place(k) else { continue };
@@ -57,7 +56,7 @@ pub fn find(fitted: &FittedSelection) -> (Vec<Drift>, Option<Finding>) {
         }
     }
     let (base, now) = (at(&model.base), at(&point.x));
-    add("thrust over mass at 60 % throttle", "m/s2", base, now, variance.max(0.0).sqrt(), MATERIAL[2], 1.0);
+    add("thrust over mass at 60 % throttle", "m/s2", base, now, variance.max(0.0).sqrt(), MOVED_THRUST.get(), 1.0);
     let moved = !out.is_empty() || voltage_moved(fitted);
     let cause = if moved { cause::find(fitted) } else { None };
     (out, cause)
@@ -68,5 +67,6 @@ fn voltage_moved(fitted: &FittedSelection) -> bool {
     let k = THRUST.start + 5;
     let Some(i) = point.free.iter().position(|f| *f == k) else { return false };
     let change = (point.x[k] - fitted.problem.model.base[k]).abs();
-    change > SURE * fitted.covariance[(i, i)].max(0.0).sqrt() && change > 0.1 * fitted.problem.model.base[k].abs()
+    change > MOVED_DEVIATIONS.get() * fitted.covariance[(i, i)].max(0.0).sqrt()
+        && change > MOVED_VOLTAGE.get() * fitted.problem.model.base[k].abs()
 }

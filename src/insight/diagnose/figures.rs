@@ -8,6 +8,7 @@ use super::Diagnosed;
 use super::predict::CHANNELS;
 use super::structure::{NAMES, Structure};
 use crate::base::stats::mean;
+use crate::insight::criteria::shown::{FIGURE_FALL, FIGURE_SHARE};
 use crate::model::effects::Role;
 use profile::Profile;
 use spectrum::Spectra;
@@ -15,10 +16,6 @@ use windows::{Errors, Window};
 
 /// Most channels that are shown.
 const MOST: usize = 6;
-/// Share of a channel's residual power that goes with an effect, or fall of its root mean square, that is worth a
-/// figure.
-const SHOWN: f64 = 0.05;
-const FELL: f64 = 0.02;
 
 /// Everything that is drawn of one channel. Before is the compact model, fitted to the flights; after is the same with
 /// what was found.
@@ -44,8 +41,8 @@ pub fn channels(diagnosed: &Diagnosed) -> Vec<ChannelFigure> {
         let name = NAMES[c].0;
         // Constant errors of the IMU are part of the fit before as well as after: there is nothing to see in them.
         let findings = diagnosed.diagnosis.findings.iter().filter(|f| !f.has(Role::ConstantError));
-        let explained = findings.filter_map(|f| f.explained.get(name)).any(|share| *share > SHOWN);
-        explained || fell > FELL || unexplained(diagnosed, name)
+        let explained = findings.filter_map(|f| f.explained.get(name)).any(|share| *share > FIGURE_SHARE.get());
+        explained || fell > FIGURE_FALL.get() || unexplained(diagnosed, name)
     };
     let mut ranked: Vec<(bool, f64, usize)> = (0..CHANNELS)
         .filter(|&c| !diagnosed.selection.base.residual[c].is_empty())

@@ -2,6 +2,7 @@
 
 use super::horizon::Horizon;
 use super::structure::Structure;
+use crate::insight::criteria::shown::MENTIONED_SHARE;
 use crate::model::effects::{self, Card, Role};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -94,9 +95,6 @@ pub struct Finding {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
 }
-
-/// Shares of a channel below this are not worth a word.
-const MENTIONED: f64 = 0.02;
 
 /// A number of the compact model that differs from the base vehicle's.
 #[derive(Clone, Debug, Serialize)]
@@ -264,7 +262,7 @@ impl Finding {
     /// Shares of the channels that are worth a word, the largest first.
     pub fn mentioned(&self) -> Vec<(&'static str, f64)> {
         let mut shares: Vec<_> =
-            self.explained.iter().map(|(c, s)| (*c, *s)).filter(|(_, s)| *s >= MENTIONED).collect();
+            self.explained.iter().map(|(c, s)| (*c, *s)).filter(|(_, s)| *s >= MENTIONED_SHARE.get()).collect();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
     }

@@ -13,6 +13,7 @@ use super::numbers::span;
 use super::predict::{PUSH, TURN};
 use super::select::Added;
 use super::structure::{PLACE, Structure};
+use crate::insight::criteria::material::MATERIAL_BIAS;
 use crate::model::effects::{self, ResidualChannel, Role};
 
 /// What was found.
@@ -78,14 +79,12 @@ fn count(finding: &mut Finding, lost: &Lost) {
 
 /// Constant errors of the IMU, which every fit allows for.
 fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
-    // Larger than what any such sensor has, by a share of the smallest size that is one.
-    const SHARE: f64 = 0.8;
     let point = &fitted.selection.point;
     let mut out = Vec::new();
     for card in effects::acting(Role::ConstantError) {
         let channel = if card.channels.contains(&ResidualChannel::Turn) { TURN } else { PUSH };
         let size = span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
-        if !fitted.problem.rows[channel].is_empty() && size > SHARE * card.parameters[0].typical[0] {
+        if !fitted.problem.rows[channel].is_empty() && size > MATERIAL_BIAS.get() * card.parameters[0].typical[0] {
             out.push(judge(fitted, &Added { card, ties: Vec::new() }));
         }
     }

@@ -11,11 +11,9 @@ use super::select::{self, Selection};
 use super::structure::NAMES;
 use super::whiten::Whitener;
 use crate::base::stats::mean;
+use crate::insight::criteria::flown::{HELD_OUT_ROWS, WORTH_GAINING};
 use crate::insight::prepare::data::TRAIN_SHARE;
 use std::collections::BTreeMap;
-
-/// Whitened squares over those that are left at least, from which on there is something to gain.
-const WORTH: f64 = 1.05;
 
 /// Base and extended model, fitted on one part of the flight and judged on the other.
 pub struct HeldOut {
@@ -79,7 +77,7 @@ pub fn measure(problem: &Problem, selection: &Selection, kept: &Selection) -> He
     let squares = |p: &FitPoint| fit::costs(problem, &test.apply(&p.residual, &problem.rows)).iter().sum::<f64>();
     let (before, after) = (squares(&base), squares(&extended));
     let floor = after - select::left_to_gain(problem, &test, &extended, selection);
-    let captured = (before > WORTH * floor).then(|| (before - after) / (before - floor).max(1e-9));
+    let captured = (before > WORTH_GAINING.get() * floor).then(|| (before - after) / (before - floor).max(1e-9));
     HeldOut {
         channels: channels(problem, &base, &extended, &out),
         horizons: horizons(problem, &base, &extended, &out),
@@ -93,7 +91,7 @@ fn channels(problem: &Problem, base: &FitPoint, extended: &FitPoint, out: &[bool
     let mut all = BTreeMap::new();
     for c in 0..CHANNELS {
         let rows: Vec<usize> = (0..problem.rows[c].len()).filter(|&i| out[problem.rows[c][i].block as usize]).collect();
-        if rows.len() < 20 || base.residual[c].is_empty() {
+        if rows.len() < HELD_OUT_ROWS.count() || base.residual[c].is_empty() {
             continue;
         }
         let rms = |p: &FitPoint| mean(&rows.iter().map(|&i| p.residual[c][i].powi(2)).collect::<Vec<_>>()).sqrt();

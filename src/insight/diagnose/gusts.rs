@@ -8,13 +8,13 @@ use super::problem::Problem;
 use super::record::BIN_S;
 use super::select::Selection;
 use crate::base::stats::{NORMAL_95, mean};
+use crate::insight::criteria::chance::{GUST_BALANCED, GUST_LASTING, GUST_MEMORY_S, GUST_STRUCTURE};
+use crate::insight::criteria::flown::GUST_ROWS;
+use crate::insight::criteria::material::MATERIAL_GUST;
+use crate::insight::criteria::replicated::AGREEING_STRETCHES;
 use crate::insight::estimate::robust::capped;
 use crate::model::effects::{self, Card, Role};
 
-/// Stretches of flight that have to agree.
-const REPLICATED: f64 = 15.0;
-/// Smallest gust that is worth a word, m/s2.
-const LEAST_GUST: f64 = 0.08;
 /// Residuals are capped at so many standard deviations.
 const CAP: f64 = 6.0;
 /// Lags between which the memory of gusts is looked for, in bins.
@@ -26,13 +26,13 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
     let common = Autocovariance::of(problem, selection)?;
     let (sigma, tau) = (common.sigma(), common.tau());
     let swings = !oscillation::find(problem, &selection.point.residual).is_empty();
-    if common.stretches() < REPLICATED
+    if common.stretches() < AGREEING_STRETCHES.get()
         || swings
-        || sigma < LEAST_GUST
+        || sigma < MATERIAL_GUST.get()
         || !common.is_balanced()
         || !common.lasts()
-        || tau < 0.05
-        || structure_rms > 0.7 * sigma
+        || tau < GUST_MEMORY_S.get()
+        || structure_rms > GUST_STRUCTURE.get() * sigma
     {
         return None;
     }
@@ -71,7 +71,7 @@ impl Autocovariance {
         let mut out = Self { lags: [[0.0; 2]; 2], agree: [0.0; 2], blocks: vec![[0.0; 2]; problem.blocks] };
         for axis in 0..2 {
             let (rows, residual) = (&problem.rows[FORCE + axis], &selection.point.residual[FORCE + axis]);
-            if rows.len() < 1000 {
+            if rows.len() < GUST_ROWS.count() {
                 return None;
             }
             let y = capped(residual, CAP, 0.0);
@@ -125,7 +125,7 @@ impl Autocovariance {
     /// The air is as restless to one side as to the other.
     fn is_balanced(&self) -> bool {
         let [x, y] = [self.lags[0][0], self.lags[1][0]];
-        x.min(y) > 0.15 * x.max(y)
+        x.min(y) > GUST_BALANCED.get() * x.max(y)
     }
 
     /// The air is as restless early as late; drag that sets in is not.
@@ -137,7 +137,7 @@ impl Autocovariance {
         };
         let quarters: Vec<f64> = (0..4).map(quarter).collect();
         let (least, most) = quarters.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), q| (l.min(*q), m.max(*q)));
-        least > 0.1 * most
+        least > GUST_LASTING.get() * most
     }
 
     /// Standard error of the mean of both axes at a lag.

@@ -6,12 +6,14 @@ use super::impact::impact;
 use super::numbers::span;
 use super::predict::{CHANNELS, kind};
 use super::problem::ChannelValues;
-use super::replication::{REPLICATED, stretches};
+use super::replication::stretches;
 use super::select::Added;
 use super::shown::parameters;
 use super::size::{is_bounded, is_material};
 use super::structure::NAMES;
 use crate::base::stats::mean;
+use crate::insight::criteria::evident::EXPLAINS_ANYTHING;
+use crate::insight::criteria::replicated::AGREEING_STRETCHES;
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use crate::model::effects::Card;
@@ -34,7 +36,7 @@ pub fn judge(fitted: &FittedSelection, added: &Added) -> Judged {
     let point = fitted.point();
     let replicated = stretches(fitted, card);
     let why = (!replicated.evident()).then(|| {
-        if replicated.count < REPLICATED {
+        if replicated.count < AGREEING_STRETCHES.get() {
             format!("only {:.0} stretches of flight agree", replicated.count)
         } else {
             "its size is not sure enough".into()
@@ -77,7 +79,7 @@ fn explained(
     for c in (0..CHANNELS).filter(known) {
         let before: Vec<f64> = residual[c].iter().zip(&change[c]).map(|(r, d)| r + d).collect();
         let share = 1.0 - power(&residual[c]) / power(&before).max(1e-300);
-        if share > 1e-3 {
+        if share > EXPLAINS_ANYTHING.get() {
             explained.insert(NAMES[c].0, share);
         }
         if share > most.0 || most.1.is_empty() {

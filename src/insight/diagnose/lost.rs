@@ -6,15 +6,14 @@ use super::predict::RATE;
 use super::problem::Problem;
 use super::select::Selection;
 use crate::base::stats::{NORMAL_95, robust_sd};
+use crate::insight::criteria::chance::{
+    EARLY_DEVIATIONS, EARLY_SHARE, LOST_COMMANDS, LOST_HALF, LOST_MOST, LOST_OVER_EARLY, LOST_OVER_HALF, LOST_WHOLE,
+    MOVEMENT_BEFORE, MOVEMENT_DEVIATIONS,
+};
+use crate::insight::criteria::material::MATERIAL_SIZE;
 use crate::model::dynamics::extended;
 use crate::model::dynamics::response::alpha;
 use crate::model::effects::Card;
-
-/// A movement is looked at where its loss would show beyond so many standard deviations of the noise.
-const CLEAR: f64 = 12.0;
-/// The same for an answer that comes early, and the share of a movement that it has to be.
-const EARLY_CLEAR: f64 = 4.0;
-const EARLY: f64 = 0.4;
 
 /// What large stick movements say.
 #[derive(Clone, Copy, Debug)]
@@ -33,10 +32,11 @@ pub struct Lost {
 impl Lost {
     /// Whether commands get lost, by a share that matters for the effect of this card.
     pub fn matters(&self, card: &Card) -> bool {
-        self.whole >= 12
-            && self.whole > 2 * self.half
-            && self.whole > 2 * self.early
-            && self.share > 0.5 * card.parameters[0].typical[0]
+        let whole = self.whole as f64;
+        whole >= LOST_COMMANDS.get()
+            && whole > LOST_OVER_HALF.get() * self.half as f64
+            && whole > LOST_OVER_EARLY.get() * self.early as f64
+            && self.share > MATERIAL_SIZE.get() * card.parameters[0].typical[0]
     }
 }
 
@@ -61,8 +61,8 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
         }
     }
     let count = |of: &dyn Fn(&StickAnswer) -> bool| answers.iter().filter(|a| of(a)).count();
-    let whole = count(&|a| (0.7..1.4).contains(&a.missing));
-    let half = count(&|a| (0.3..0.7).contains(&a.missing));
+    let whole = count(&|a| (LOST_WHOLE.get()..LOST_MOST.get()).contains(&a.missing));
+    let half = count(&|a| (LOST_HALF.get()..LOST_WHOLE.get()).contains(&a.missing));
     let n = answers.len().max(1) as f64;
     let share = (whole + half) as f64 / n;
     let spread = NORMAL_95 * (share * (1.0 - share) / n).sqrt();
@@ -93,9 +93,10 @@ impl StickAxis {
     fn answer(&self, three: &[(f64, [f64; 4])], middles: &[f64], by_bin: &[f64]) -> Option<StickAnswer> {
         let &[before, now, next] = three else { return None };
         let change = (next.1[self.k] - now.1[self.k]) * self.max_rate;
+        let clear = MOVEMENT_DEVIATIONS.get() * self.noise;
         // What the loss of the command before would leave reaches into this one.
         let earlier = (now.1[self.k] - before.1[self.k]) * self.max_rate;
-        if change.abs() < CLEAR * self.noise || earlier.abs() > 0.25 * change.abs() {
+        if change.abs() < clear || earlier.abs() > MOVEMENT_BEFORE.get() * change.abs() {
             return None;
         }
         let (begin, held) = (next.0 + self.late, next.0 - now.0);
@@ -108,7 +109,7 @@ impl StickAxis {
             along -= shape * by_bin[bin];
             square += shape * shape;
         }
-        if square < (CLEAR * self.noise).powi(2) || !along.is_finite() {
+        if square < clear.powi(2) || !along.is_finite() {
             return None;
         }
         let due = middles.partition_point(|t| *t < begin - held);
@@ -118,7 +119,7 @@ impl StickAxis {
             ahead += shape * by_bin[bin];
             most += shape * shape;
         }
-        let early = most > (EARLY_CLEAR * self.noise).powi(2) && ahead > EARLY * most;
+        let early = most > (EARLY_DEVIATIONS.get() * self.noise).powi(2) && ahead > EARLY_SHARE.get() * most;
         Some(StickAnswer { missing: along / square, early })
     }
 }

@@ -1,6 +1,11 @@
 //! The numbers that a diagnosis may move: those of the compact model, of every effect, and the voltage each flight
 //! begins with.
 
+use crate::insight::criteria::believed::{
+    SHORTEST_SHAPE, TRUST_DISCHARGE, TRUST_DRAG, TRUST_EFFECT, TRUST_RATE, TRUST_THRUST, TRUST_TIME_CONSTANT,
+    TRUST_VOLTAGE,
+};
+use crate::insight::estimate::range::{DRAG_1_M, RATE_GAIN, TIME_CONSTANT_S};
 use crate::model::dynamics::drag;
 use crate::model::effects::{self, COUNT, Card, CompactNumber, LOG_COUNT, Quantities, Quantity};
 use crate::model::vehicle::Vehicle;
@@ -77,7 +82,7 @@ impl Numbers {
         out.forces(vehicle);
         out.effects(vehicle);
         for (flight, volts) in begin_v.iter().enumerate() {
-            let extent = Extent { bounds: [0.0, 1e3], step: 1e-2, trust: 10.0 };
+            let extent = Extent { bounds: [0.0, 1e3], step: 1e-2, trust: TRUST_VOLTAGE.get() };
             out.add(format!("begin_v.{flight}"), "V", *volts, extent, &[Quantity::Voltage]);
         }
         out
@@ -97,14 +102,14 @@ impl Numbers {
     fn response(&mut self, vehicle: &Vehicle) {
         let tau = vehicle.time_constants();
         for (k, axis) in ["roll", "pitch", "yaw", "thrust"].iter().enumerate() {
-            let extent = Extent { bounds: [5e-4, 0.3], step: 2e-4, trust: tau[k] };
+            let extent = Extent { bounds: TIME_CONSTANT_S, step: 2e-4, trust: TRUST_TIME_CONSTANT.get() * tau[k] };
             let writes = if k < 3 { Quantity::RateCommand } else { Quantity::ThrustCommand };
             self.add(format!("time_constant_s.{axis}"), "s", tau[k], extent, &[writes]);
         }
         let rates = vehicle.max_rates_rad_s();
         for (k, axis) in ["roll", "pitch", "yaw"].iter().enumerate() {
-            let bounds = [0.2 * rates[k], 5.0 * rates[k]];
-            let extent = Extent { bounds, step: 1e-3 * rates[k], trust: 0.5 * rates[k] };
+            let bounds = RATE_GAIN.map(|gain| gain * rates[k]);
+            let extent = Extent { bounds, step: 1e-3 * rates[k], trust: TRUST_RATE.get() * rates[k] };
             self.add(format!("max_rate_deg_s.{axis}"), "rad/s", rates[k], extent, &[Quantity::RateCommand]);
         }
     }
@@ -114,16 +119,16 @@ impl Numbers {
         let full = vehicle.thrust_to_weight() * vehicle.gravity_m_s2;
         for k in 0..6 {
             let scale = if k < 4 { full } else { full / vehicle.battery.full_v };
-            let extent = Extent { bounds: [-1e3, 1e3], step: 1e-3 * scale, trust: scale };
+            let extent = Extent { bounds: [-1e3, 1e3], step: 1e-3 * scale, trust: TRUST_THRUST.get() * scale };
             let c = vehicle.thrust_n[k] / vehicle.mass_kg;
             self.add(format!("thrust_n[{k}]"), "m/s2", c, extent, &[Quantity::SpecificForce]);
         }
         let drag = drag::ellipsoid(&vehicle.drag).map(|k| k / vehicle.mass_kg);
         for (k, axis) in ["x", "y", "z"].iter().enumerate() {
-            let extent = Extent { bounds: [0.0, 0.5], step: 2e-4, trust: 0.05 };
+            let extent = Extent { bounds: DRAG_1_M, step: 2e-4, trust: TRUST_DRAG.get() };
             self.add(format!("drag_over_mass_1_m.{axis}"), "1/m", drag[k], extent, &[Quantity::SpecificForce]);
         }
-        let extent = Extent { bounds: [-1.0, 1.0], step: 1e-5, trust: 0.1 };
+        let extent = Extent { bounds: [-1.0, 1.0], step: 1e-5, trust: TRUST_DISCHARGE.get() };
         self.add("battery.rate_v_s".into(), "V/s", vehicle.battery.rate_v_s, extent, &[Quantity::Voltage]);
     }
 
@@ -134,9 +139,9 @@ impl Numbers {
         let parameters = effects::cards().flat_map(|card| card.parameters.iter().enumerate().map(move |p| (card, p)));
         for ((card, (i, p)), value) in parameters.zip(values) {
             // A time constant that goes to nothing is another effect.
-            let low = if card.shape == Some(i) { 0.3 * p.typical[0] } else { p.low };
+            let low = if card.shape == Some(i) { SHORTEST_SHAPE.get() * p.typical[0] } else { p.low };
             let [least, most] = p.typical;
-            let extent = Extent { bounds: [low, p.high], step: 0.05 * least, trust: 3.0 * most };
+            let extent = Extent { bounds: [low, p.high], step: 0.05 * least, trust: TRUST_EFFECT.get() * most };
             self.add(format!("{}.{}", card.id, p.name), p.unit, value, extent, card.writes);
         }
     }

@@ -5,6 +5,7 @@
 use super::predict::FORCE;
 use super::problem::{ChannelValues, Problem, ResidualRow};
 use super::record::BIN_S;
+use crate::insight::criteria::replicated::{OSCILLATION_AWAY, OSCILLATION_BACK, OSCILLATION_LASTS};
 use crate::insight::estimate::robust::capped;
 use std::ops::RangeInclusive;
 
@@ -12,10 +13,6 @@ use std::ops::RangeInclusive;
 const CAP: f64 = 6.0;
 /// Half periods that are looked for, in bins: 10 Hz to 0.8 Hz.
 const HALF: RangeInclusive<usize> = 5..=60;
-/// Stretches of time that have to agree on the first and on the second half period.
-const AGREE: [f64; 2] = [10.0, 6.0];
-/// Share of the swing that is left after the second half period.
-const LASTS: f64 = 0.25;
 /// What a swing is called, by its frequency, Hz.
 const TONES: [(f64, &str); 7] = [
     (0.9, "a swing near 0.9 Hz"),
@@ -70,7 +67,8 @@ fn swing(residual: &[f64], rows: &[ResidualRow], blocks: usize) -> Option<(f64, 
         sum.max(0.0).powi(2) / blocks.iter().map(|b| b * b).sum::<f64>().max(1e-300)
     };
     let (away, back) = (-first.iter().sum::<f64>(), second.iter().sum::<f64>());
-    let swings = agree(&first, -1.0) > AGREE[0] && agree(&second, 1.0) > AGREE[1] && back > LASTS * away;
+    let agreed = agree(&first, -1.0) > OSCILLATION_AWAY.get() && agree(&second, 1.0) > OSCILLATION_BACK.get();
+    let swings = agreed && back > OSCILLATION_LASTS.get() * away;
     let hz = 0.5 / (half as f64 * BIN_S);
     let near = |tone: &(f64, &str)| (tone.0 / hz).ln().abs();
     let name = TONES.into_iter().min_by(|a, b| near(a).total_cmp(&near(b)))?.1;

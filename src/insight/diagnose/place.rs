@@ -4,13 +4,11 @@
 use super::folds::fold;
 use super::predict::FORCE;
 use super::problem::{ChannelValues, Problem};
+use crate::insight::criteria::complete::{PLACE_ROWS, PLACE_SHARE};
 use std::collections::HashMap;
 
-/// Side of a place, m, and the rows that a place has to have been seen in elsewhere in time.
+/// Side of a place, m.
 const SIDE_M: f64 = 6.0;
-const SEEN: f64 = 100.0;
-/// Share of the horizontal residual from which it is told.
-const LEAST: f64 = 0.05;
 
 /// Share of the horizontal residual that its mean at the same place, at other times, predicts beyond chance; none below
 /// a share that matters.
@@ -35,7 +33,7 @@ pub fn share(problem: &Problem, residual: &ChannelValues) -> Option<f64> {
     // What a shifted residual shows of this is chance.
     let n = force.len();
     let chance = (1..=4).map(|k| predicted(&places, &force, k * n / 5)).fold(0.0, f64::max);
-    Some(predicted(&places, &force, 0) - chance).filter(|share| *share > LEAST)
+    Some(predicted(&places, &force, 0) - chance).filter(|share| *share > PLACE_SHARE.get())
 }
 
 /// Share that the means of the other folds predict, with the force taken from so many rows later.
@@ -49,12 +47,13 @@ fn predicted(places: &[(u32, [i32; 2])], force: &[[f64; 2]], later: usize) -> f6
             *sums = [sums[0] + x, sums[1] + y, sums[2] + 1.0];
         }
     }
+    let known = PLACE_ROWS.get();
     let (mut left, mut total) = (0.0, 0.0);
     for (i, &(fold, place)) in places.iter().enumerate() {
         let (all, own) = (whole[&place], part[&(fold, place)]);
         let seen = all[2] - own[2];
         for (k, y) in at(i).into_iter().enumerate() {
-            let mean = if seen < SEEN { 0.0 } else { (all[k] - own[k]) / seen };
+            let mean = if seen < known { 0.0 } else { (all[k] - own[k]) / seen };
             left += (y - mean).powi(2);
             total += y * y;
         }

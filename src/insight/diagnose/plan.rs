@@ -4,11 +4,9 @@
 use super::finding::{Detectable, NotDetectable};
 use super::numbers::span;
 use super::problem::Problem;
-use super::rank::{ABSORBED, Reach};
+use super::rank::Reach;
+use crate::insight::criteria::flown::{ABSORBED_SHARE, NEAREST_LIKENESS, SEEN_DEVIATIONS};
 use crate::model::effects::{self, Card, EffectKind, ResidualChannel, Role};
-
-/// Standard deviations that a size has to be, to be seen.
-const SEEN: f64 = 5.0;
 
 /// What the flights could show, and what not, and why.
 pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<NotDetectable>) {
@@ -28,8 +26,8 @@ pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<NotDet
             }
             continue;
         };
-        let smallest = SEEN / r.information.max(1e-300).sqrt();
-        if r.kept < ABSORBED {
+        let smallest = SEEN_DEVIATIONS.get() / r.information.max(1e-300).sqrt();
+        if r.kept < ABSORBED_SHARE.get() {
             cannot.push(hidden(
                 "the compact model's own numbers take it up; only a drift against a known vehicle shows it".into(),
                 None,
@@ -42,7 +40,7 @@ pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<NotDet
             cannot.push(hidden(format!("too little of it was flown: {}", card.manoeuvre.0), Some(smallest)));
             continue;
         }
-        let nearest = r.nearest.filter(|n| n.1 > 0.5).map(|n| n.0);
+        let nearest = r.nearest.filter(|n| n.1 > NEAREST_LIKENESS.get()).map(|n| n.0);
         can.push(Detectable {
             effect: card.id,
             smallest,

@@ -5,12 +5,10 @@ use super::fit::FitPoint;
 use super::problem::{ChannelValues, Problem};
 use super::score::score;
 use super::whiten::Whitener;
+use crate::insight::criteria::flown::ABSORBED_SHARE;
 use crate::insight::estimate::gram::Grams;
 use crate::model::effects::Card;
 use rayon::prelude::*;
-
-/// Share of its information that a candidate keeps beside the base; below, the base absorbs it.
-pub const ABSORBED: f64 = 2e-3;
 
 /// What a log could show of an effect, before any residual is looked at.
 #[derive(Clone, Debug)]
@@ -44,7 +42,7 @@ pub fn rank(
     let mut order: Vec<(usize, f64, f64)> = Vec::new();
     for (j, s) in scores.iter().enumerate() {
         if let Some(s) = s
-            && s.information[0] > ABSORBED * s.raw[0]
+            && s.information[0] > ABSORBED_SHARE.get() * s.raw[0]
         {
             order.push((j, s.gain, s.evidence));
         }

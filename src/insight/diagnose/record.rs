@@ -4,6 +4,7 @@
 use crate::base::stats::quantile;
 use crate::flight::Log;
 use crate::flight::series::{last_at, period};
+use crate::insight::criteria::consistent::{ONE_CLOCK_SHARE, ROTOR_COMMAND_ROWS, ROTOR_COMMAND_SHARE};
 use crate::insight::prepare::flight::PreparedFlight;
 use crate::insight::prepare::windows::{often_enough, windows};
 use crate::insight::quality::Quality;
@@ -157,7 +158,7 @@ impl FlightRecord {
 fn one_clock(log: &Log) -> bool {
     let same = |t: &&f64| last_at(&log.imu.time_s, **t).is_some_and(|i| log.imu.time_s[i] == **t);
     let n = log.setpoint.len();
-    n > 0 && log.setpoint.time_s.iter().filter(same).count() > n * 9 / 10
+    n > 0 && log.setpoint.time_s.iter().filter(same).count() as f64 > ONE_CLOCK_SHARE.get() * n as f64
 }
 
 /// Whether the thrust command is the mean rotor speed in another unit.
@@ -166,7 +167,8 @@ fn from_rotors(log: &Log) -> bool {
     let ratios: Vec<f64> = log.setpoint.rows.iter().zip(speeds).map(|(row, speed)| row[3] / speed).collect();
     let finite: Vec<f64> = ratios.into_iter().filter(|r| r.is_finite()).collect();
     let middle = crate::base::stats::median(&finite);
-    finite.len() > 100 && finite.iter().filter(|r| (*r / middle - 1.0).abs() < 1e-6).count() > finite.len() * 9 / 10
+    let same = finite.iter().filter(|r| (*r / middle - 1.0).abs() < 1e-6).count() as f64;
+    finite.len() > ROTOR_COMMAND_ROWS.count() && same > ROTOR_COMMAND_SHARE.get() * finite.len() as f64
 }
 
 /// Commands as shares of what a full stick asks for; what was not commanded is 0.

@@ -2,18 +2,14 @@
 
 use super::fitted::FittedSelection;
 use super::score::score;
+use crate::insight::criteria::evident::SURE_DEVIATIONS;
+use crate::insight::criteria::replicated::{
+    AGREEING_STRETCHES, RARE_DEVIATIONS, RARE_SHARE, RARE_STRETCHES, STRETCH_DEVIATIONS,
+};
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use crate::model::effects::Card;
 use nalgebra::DVector;
-
-/// Stretches of flight that have to agree before an effect is named.
-pub const REPLICATED: f64 = 15.0;
-/// Standard deviations that its size has to be.
-const SURE: f64 = 4.0;
-/// An effect that is rarely flown is also named where at least so many stretches show it by themselves, hold at least
-/// this share of all that the flight tells of it, and its size is so many standard deviations.
-const RARE: (f64, f64, f64) = (4.0, 0.7, 6.0);
 
 /// How often an effect was seen, and how many standard deviations its size is.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,8 +23,9 @@ pub struct Replicated {
 
 impl Replicated {
     pub fn evident(&self) -> bool {
-        let rarely = self.alone >= RARE.0 && self.held >= RARE.1 && self.sure >= RARE.2;
-        self.count >= REPLICATED && self.sure >= SURE || rarely
+        let rarely =
+            self.alone >= RARE_STRETCHES.get() && self.held >= RARE_SHARE.get() && self.sure >= RARE_DEVIATIONS.get();
+        self.count >= AGREEING_STRETCHES.get() && self.sure >= SURE_DEVIATIONS.get() || rarely
     }
 }
 
@@ -59,6 +56,7 @@ pub fn stretches(fitted: &FittedSelection, card: &Card) -> Replicated {
     }
     let Some(score) = score(&grams, &rest, &own, n, &vec![0.0; n + 1]) else { return Replicated::default() };
     let size = DVector::from_iterator(own.len(), sizes.iter().map(|(_, size)| *size));
+    let shows = STRETCH_DEVIATIONS.get();
     let (mut alone, mut held, mut all): (f64, f64, f64) = (0.0, 0.0, 0.0);
     for block in &score.blocks {
         // Along the fitted direction: what this stretch alone makes of its size, in standard deviations.
@@ -66,9 +64,9 @@ pub fn stretches(fitted: &FittedSelection, card: &Card) -> Replicated {
         let information = (size.transpose() * left * &size)[(0, 0)].max(1e-12);
         let agrees = size.dot(&right.column(0)) / information.sqrt();
         all += information;
-        if agrees > 2.0 {
+        if agrees > shows {
             (alone, held) = (alone + 1.0, held + information);
-        } else if agrees < -2.0 {
+        } else if agrees < -shows {
             (alone, held) = (alone - 1.0, held - information);
         }
     }

@@ -6,19 +6,15 @@ use super::numbers::span;
 use super::problem::{ChannelValues, Problem};
 use super::rank::{Reach, rank};
 use super::size::is_material;
-use super::trial::{GAIN, Trial, tied, try_best};
+use super::trial::{Trial, tied, try_best};
 use super::whiten::Whitener;
+use crate::insight::criteria::consistent::CLOCK_SKEW_SEEN;
+use crate::insight::criteria::evident::{LEAST_GAIN, MOST_EFFECTS, NUISANCE_GAIN};
+use crate::insight::criteria::rival::RIVAL_KEEPS;
 use crate::insight::estimate::gram::Grams;
 use crate::model::effects::{Card, are_rivals};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-
-/// Most effects that are added.
-const MOST: usize = 8;
-/// Fall of the whitened squares for which even an effect of no size that matters is added.
-const NUISANCE: f64 = 400.0;
-/// Rivals compete where the one leaves at most this share of its gain to the other.
-const COMPETES: f64 = 0.3;
 
 /// What selection ended with.
 pub struct Selection {
@@ -65,8 +61,9 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
     watch("fitting the base", 0.1);
     let mut search = Search::new(problem, &free);
     let mut reach = Vec::new();
-    for round in 0..=MOST {
-        watch("weighing causes", 0.2 + 0.6 * round as f64 / MOST as f64);
+    let most = MOST_EFFECTS.count();
+    for round in 0..=most {
+        watch("weighing causes", 0.2 + 0.6 * round as f64 / most as f64);
         let first = round == 0;
         search.find(first);
         let (order, reached) = rank(problem, &search.whitener, &search.point, &search.found, first);
@@ -74,7 +71,7 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
             reach = reached;
         }
         search.keep_ties(&order);
-        if round == MOST || !search.add(&order) {
+        if round == most || !search.add(&order) {
             break;
         }
     }
@@ -103,7 +100,8 @@ impl<'a> Search<'a> {
         let state = problem.predict(base);
         let plain = problem.residuals(&state);
         let whitener = Whitener::plain(&plain, &problem.rows);
-        let skewed = super::skew::estimate(problem, &state, &plain).is_some_and(|skew| skew.abs() > 5e-5);
+        let skewed =
+            super::skew::estimate(problem, &state, &plain).is_some_and(|skew| skew.abs() > CLOCK_SKEW_SEEN.get());
         let point = if skewed { fit::stay } else { fit::fit }(problem, &whitener, base, free);
         Search { problem, skewed, whitener, point, added: Vec::new(), pending: Vec::new(), found: Vec::new() }
     }
@@ -139,7 +137,7 @@ impl<'a> Search<'a> {
             let gains = order.iter().filter(|s| self.found[s.0].card().id == card.id).map(|s| s.1);
             gains.fold(0.0, f64::max)
         };
-        let ties = self.pending.drain(..).filter(|(card, gain)| still(card) < COMPETES * gain);
+        let ties = self.pending.drain(..).filter(|(card, gain)| still(card) < RIVAL_KEEPS.get() * gain);
         last.ties = ties.map(|(card, _)| card).collect();
     }
 
@@ -167,8 +165,8 @@ fn best<'a>(problem: &Problem, trials: &'a [Trial]) -> Option<&'a Trial> {
     };
     let best = best_of(false)?;
     // What is too small to matter is kept beside the causes only where it would stand in their way.
-    let counts = is_material(best.card, &best.point.x) || best.gain >= NUISANCE;
-    if counts { Some(best) } else { best_of(true) }.filter(|best| best.gain >= GAIN)
+    let counts = is_material(best.card, &best.point.x) || best.gain >= NUISANCE_GAIN.get();
+    if counts { Some(best) } else { best_of(true) }.filter(|best| best.gain >= LEAST_GAIN.get())
 }
 
 /// The whitener of what is left when all columns are taken off.

@@ -2,6 +2,7 @@
 
 use super::numbers::span;
 use super::problem::Problem;
+use crate::insight::criteria::material::MATERIAL_SIZE;
 use crate::model::effects::Card;
 
 /// Whether a number of an effect ends at the bound of its range: then it stands in for something else.
@@ -13,8 +14,8 @@ pub fn is_bounded(problem: &Problem, card: &Card, x: &[f64]) -> bool {
     span(card).any(at_end)
 }
 
-/// Whether the size of an effect is one that anybody would notice: half the smallest of its typical ones.
+/// Whether the size of an effect is one that anybody would notice.
 pub fn is_material(card: &Card, x: &[f64]) -> bool {
     let from = span(card).start;
-    card.sizes().map(|(i, p)| (x[from + i] / p.typical[0]).powi(2)).sum::<f64>().sqrt() >= 0.5
+    card.sizes().map(|(i, p)| (x[from + i] / p.typical[0]).powi(2)).sum::<f64>().sqrt() >= MATERIAL_SIZE.get()
 }

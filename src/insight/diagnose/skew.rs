@@ -5,21 +5,20 @@ use super::predict::RATE;
 use super::problem::{ChannelValues, Predictions, Problem};
 use super::record::BIN_S;
 use crate::base::stats::median;
+use crate::insight::criteria::consistent::{CLOCK_BINS, CLOCK_CORRELATION, CLOCK_SKEW_MOST};
 
-/// Length of the stretches that are compared, s, and the largest skew looked for.
+/// Length of the stretches that are compared, s.
 const WINDOW_S: f64 = 6.0;
-const MOST: f64 = 0.025;
-/// Least correlation at which an offset is believed.
-const LIKE: f64 = 0.5;
 
 /// Skew of the sensors' clock, as a share, if the rates can tell; from the prediction `state` and what was measured
 /// less it.
 pub fn estimate(problem: &Problem, state: &Predictions, residual: &ChannelValues) -> Option<f64> {
+    let (most, like_enough) = (CLOCK_SKEW_MOST.get(), CLOCK_CORRELATION.get());
     let mut slopes = Vec::new();
     for f in 0..state.len() {
         let rows = &problem.rows[RATE];
         let bins = problem.records[f].bins.len();
-        if bins < 2000 || state[f].channels[RATE].is_empty() {
+        if bins < CLOCK_BINS.count() || state[f].channels[RATE].is_empty() {
             continue;
         }
         // By axis and bin: predicted and measured.
@@ -34,7 +33,7 @@ pub fn estimate(problem: &Problem, state: &Predictions, residual: &ChannelValues
         let window = (WINDOW_S / BIN_S) as usize;
         let begin = problem.records[f].time[problem.records[f].bins[0][0]];
         let (mut skew, mut points): (f64, Vec<(f64, f64)>) = (0.0, Vec::new());
-        let mut reach = MOST * (begin + 2.0 * WINDOW_S) / BIN_S;
+        let mut reach = most * (begin + 2.0 * WINDOW_S) / BIN_S;
         for from in (0..bins.saturating_sub(window)).step_by(window) {
             let time = problem.records[f].time[problem.records[f].bins[from + window / 2][0]];
             let expected = (skew * time / BIN_S) as i64;
@@ -42,13 +41,13 @@ pub fn estimate(problem: &Problem, state: &Predictions, residual: &ChannelValues
             let best = range
                 .map(|lag| (alike(&series, from, window, lag), lag))
                 .max_by(|a, b| a.0.total_cmp(&b.0))
-                .filter(|(like, _)| *like > LIKE);
+                .filter(|(like, _)| *like > like_enough);
             if let Some((_, lag)) = best {
                 points.push((time, lag as f64 * BIN_S));
                 let ratios: Vec<f64> = points.iter().filter(|p| p.0 > 0.3 * time).map(|p| p.1 / p.0).collect();
                 skew = median(&ratios);
                 // Known to a bin or two over the time so far; ahead lies one more window.
-                reach = (4.0 + MOST * WINDOW_S / BIN_S * 0.3).min(MOST * WINDOW_S / BIN_S);
+                reach = (4.0 + most * WINDOW_S / BIN_S * 0.3).min(most * WINDOW_S / BIN_S);
             }
         }
         // A delay shifts all windows alike: what grows is told by windows half a flight apart.

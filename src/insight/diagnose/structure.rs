@@ -5,6 +5,8 @@ use super::folds::{FOLDS, fold};
 use super::predict::{CHANNELS, FORCE, RATE, VOLTAGE};
 use super::problem::{ChannelValues, Predictions, Problem};
 use crate::base::stats::quantile;
+use crate::insight::criteria::complete::VARIANCE_SHARE;
+use crate::insight::criteria::flown::STRUCTURE_ROWS;
 use crate::insight::estimate::autoregression::autoregression;
 use crate::insight::estimate::robust::capped;
 use nalgebra::{DMatrix, DVector};
@@ -65,7 +67,8 @@ pub const NAMES: [(&str, &str); CHANNELS] = [
 
 /// The residuals of channels of rates, forces and voltage, searched for structure.
 pub fn search(problem: &Problem, state: &Predictions, residual: &ChannelValues) -> Vec<Structure> {
-    let channels: Vec<usize> = (RATE..FORCE + 3).chain([VOLTAGE]).filter(|&c| residual[c].len() > 200).collect();
+    let channels: Vec<usize> =
+        (RATE..FORCE + 3).chain([VOLTAGE]).filter(|&c| residual[c].len() > STRUCTURE_ROWS.count()).collect();
     let mut found: Vec<Structure> = channels.into_par_iter().map(|c| one(problem, state, c, &residual[c])).collect();
     let mut belongs = |c: usize, share: f64, along: &'static str| {
         found.iter_mut().filter(|s| s.channel == NAMES[c].0).for_each(|s| s.belongs(share, along));
@@ -112,7 +115,7 @@ fn one(problem: &Problem, state: &Predictions, c: usize, residual: &[f64]) -> St
     let logs: Vec<f64> = y.iter().map(|y| (y * y + 1e-3 * power).ln()).collect();
     let middle = crate::base::stats::mean(&logs);
     let logs: Vec<f64> = logs.iter().map(|l| l - middle).collect();
-    let (variance_share, loud) = best(&logs).map_or((0.0, None), |(s, f)| (s, (s > 0.01).then_some(f)));
+    let loud = best(&logs).and_then(|(s, f)| (s > VARIANCE_SHARE.get()).then_some(f));
     let spread = |f: &Feature| {
         let sd: Vec<f64> = curve(f, &y).iter().map(|[_, _, error]| *error).filter(|e| *e > 0.0).collect();
         let count = |f: &Feature, b: usize| f.level.iter().filter(|&&l| l as usize == b).count().max(1) as f64;
@@ -129,7 +132,7 @@ fn one(problem: &Problem, state: &Predictions, c: usize, residual: &[f64]) -> St
         along: along.map(|f| f.name),
         along_share,
         curve: along.map_or(Vec::new(), |f| curve(f, &y)),
-        variance_along: loud.filter(|_| variance_share > 0.02).map(|f| f.name),
+        variance_along: loud.map(|f| f.name),
         variance_ratio: loud.map_or(1.0, spread),
     }
 }

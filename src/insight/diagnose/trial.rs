@@ -6,18 +6,12 @@ use super::numbers::{place, span};
 use super::problem::Problem;
 use super::size::is_bounded;
 use super::whiten::Whitener;
+use crate::insight::criteria::evident::{
+    BOUNDED_MERIT, LEAST_EVIDENCE, LEAST_GAIN, RARE_GAIN, SHORT_LIST, WORTH_A_FIT,
+};
+use crate::insight::criteria::rival::TIE_DEVIATIONS;
 use crate::model::effects::{Card, are_rivals};
 use rayon::prelude::*;
-
-/// Least fall of the whitened squares, and least number of agreeing stretches, for a candidate to be added.
-pub const GAIN: f64 = 30.0;
-pub const EVIDENCE: f64 = 9.0;
-/// Candidates refitted in a round, besides the rivals of the first.
-const SHORT_LIST: usize = 6;
-/// Fall of the whitened squares for which even a few stretches are enough to be looked at.
-const RARE: f64 = 100.0;
-/// Rivals that come so near the best by standard deviations of their difference are a tie.
-const TIE: f64 = 2.5;
 
 /// An effect that was tried beside what stands.
 pub struct Trial {
@@ -28,10 +22,10 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Gain; half of it where a number ends at the bound of its range, for then the effect stands in for something
+    /// Gain; less of it where a number ends at the bound of its range, for then the effect stands in for something
     /// else.
     pub fn merit(&self, problem: &Problem) -> f64 {
-        if self.bounded(problem) { 0.5 * self.gain } else { self.gain }
+        if self.bounded(problem) { BOUNDED_MERIT.get() * self.gain } else { self.gain }
     }
 
     pub fn bounded(&self, problem: &Problem) -> bool {
@@ -44,7 +38,7 @@ pub fn tied(best: &Trial, other: &Trial) -> bool {
     let differences: Vec<f64> = other.point.cost.iter().zip(&best.point.cost).map(|(a, b)| a - b).collect();
     let sum: f64 = differences.iter().sum();
     let spread = differences.iter().map(|d| d * d).sum::<f64>().sqrt();
-    other.gain > GAIN && sum < TIE * spread
+    other.gain > LEAST_GAIN.get() && sum < TIE_DEVIATIONS.get() * spread
 }
 
 /// Refits the first of the ranking, and the rivals of the very first.
@@ -67,8 +61,10 @@ fn chosen(found: &[Candidate], order: &[(usize, f64, f64)]) -> Vec<usize> {
         let known = chosen.iter().any(|&i| found[i].card().id == card.id);
         let leader = chosen.first().map(|&i| found[i].card());
         let rival = leader.is_some_and(|l| are_rivals(l, card));
-        let evident = gain > 0.5 * GAIN && (evidence > 0.5 * EVIDENCE || gain > RARE);
-        if !known && evident && (chosen.len() < SHORT_LIST || rival) {
+        let share = WORTH_A_FIT.get();
+        let often = evidence > share * LEAST_EVIDENCE.get();
+        let evident = gain > share * LEAST_GAIN.get() && (often || gain > RARE_GAIN.get());
+        if !known && evident && (chosen.len() < SHORT_LIST.count() || rival) {
             chosen.push(j);
         }
     }

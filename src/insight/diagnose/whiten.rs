@@ -4,6 +4,8 @@
 use super::predict::CHANNELS;
 use super::problem::{ChannelValues, ResidualRow};
 use crate::base::stats::robust_sd;
+use crate::insight::criteria::evident::MOST_MEMORY;
+use crate::insight::criteria::flown::NOISE_ROWS;
 use crate::insight::estimate::autoregression::autoregression;
 use crate::insight::estimate::robust::{capped, huber};
 
@@ -14,10 +16,6 @@ const ORDER: [usize; 3] = [8, 3, 4];
 const HUBER: f64 = 3.5;
 /// Rows are capped at so many standard deviations before their memory is fitted.
 const CAP: f64 = 6.0;
-/// Largest sum of the coefficients: a constant residual keeps at least what is left to 1 of its size.
-const MOST_MEMORY: f64 = 0.6;
-/// Rows below which a channel is left out.
-const LEAST_ROWS: usize = 40;
 
 /// Turns rows of residuals into independent ones of variance 1.
 #[derive(Clone, Debug)]
@@ -41,7 +39,7 @@ impl Whitener {
     /// slow effect would take the effect for noise.
     pub fn plain(residual: &ChannelValues, rows: &[Vec<ResidualRow>; CHANNELS]) -> Self {
         let filter = std::array::from_fn(|c| (Vec::new(), 1.0 / robust_sd(&residual[c]).max(1e-12)));
-        let weigh = |c: usize| if rows[c].len() < LEAST_ROWS { 0.0 } else { 1.0 };
+        let weigh = |c: usize| if rows[c].len() < NOISE_ROWS.count() { 0.0 } else { 1.0 };
         Whitener { filter, weight: std::array::from_fn(|c| vec![weigh(c); rows[c].len()]) }
     }
 
@@ -54,7 +52,7 @@ impl Whitener {
             let sd = robust_sd(&white[c]).max(1e-12);
             out.filter[c].1 /= sd;
             let weigh = |w: &f64| huber(w / sd, HUBER).sqrt();
-            out.weight[c] = if rows[c].len() < LEAST_ROWS {
+            out.weight[c] = if rows[c].len() < NOISE_ROWS.count() {
                 vec![0.0; rows[c].len()]
             } else {
                 white[c].iter().map(weigh).collect()
@@ -104,8 +102,8 @@ fn memory(x: &[f64], rows: &[ResidualRow], order: usize) -> (Vec<f64>, f64) {
     let mut past = found.past;
     // What measured flights leave is so slow that its whitening would discard everything slow, the causes with it.
     let memory: f64 = past.iter().sum();
-    if memory > MOST_MEMORY {
-        past.iter_mut().for_each(|a| *a *= MOST_MEMORY / memory);
+    if memory > MOST_MEMORY.get() {
+        past.iter_mut().for_each(|a| *a *= MOST_MEMORY.get() / memory);
     }
     (past, 1.0 / found.power.sqrt().max(1e-12))
 }
