@@ -16,6 +16,7 @@ use cascade::{Cascade, Demand};
 pub use kind::Kind;
 use nalgebra::Vector3;
 use plan::Plan;
+use rand::seq::SliceRandom;
 use script::Now;
 use view::View;
 
@@ -157,8 +158,8 @@ impl Pilot {
     fn plan(&mut self, view: &View) -> Plan {
         if self.deck.is_empty() {
             let (mut early, mut late): (Vec<_>, Vec<_>) = self.kinds.iter().partition(|kind| kind.early());
-            self.rng.shuffle(&mut early);
-            self.rng.shuffle(&mut late);
+            early.shuffle(&mut self.rng);
+            late.shuffle(&mut self.rng);
             // Drawn from the end.
             self.deck = [late, early].concat();
         }

@@ -7,7 +7,9 @@ use super::script::{Course, Flip, LowHover, Now, PunchTurns, RateSteps, Script, 
 use super::view::{View, wrapped};
 use crate::base::rng::Sequence;
 use nalgebra::{Vector2, Vector3};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use rand::RngExt;
+use rand_distr::{Distribution, UnitCircle};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A manoeuvre and where it begins.
 #[derive(Debug)]
@@ -32,7 +34,7 @@ impl Plan {
     /// The manoeuvre of this kind after `flown` others of it. The first is flown at full size, and directions alternate.
     pub fn new(kind: Kind, flown: usize, view: &View, limits: &Limits, rng: &mut Sequence) -> Self {
         let sign = if flown.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let share = if flown == 0 { 1.0 } else { rng.unit() };
+        let share = if flown == 0 { 1.0 } else { rng.random() };
         let size = |low: f64| low + (1.0 - low) * share;
         match kind {
             Kind::RollSteps | Kind::PitchSteps | Kind::YawSteps | Kind::RateSteps => {
@@ -141,14 +143,10 @@ fn throttle(segments: &[(f64, f64, f64)]) -> Box<dyn Script> {
 /// Away over the origin, with the direction of travel `nose` radians to the left of the nose.
 fn across(view: &View, height: f64, nose: f64, rng: &mut Sequence, course: Course) -> Plan {
     let here = view.position.xy();
-    let away = if here.norm() > 5.0 { here.normalize() } else { on_circle(TAU * rng.unit()) };
+    let away = if here.norm() > 5.0 { here.normalize() } else { Vector2::from(UnitCircle.sample(rng)) };
     let spot = away * here.norm().clamp(20.0, 60.0);
     let travel = (-away.y).atan2(-away.x);
     let heading = travel - nose;
     let script = Box::new(course.along(travel, heading));
     Plan { station: Vector3::new(spot.x, spot.y, height), heading: Some(heading), low: false, script }
-}
-
-fn on_circle(angle: f64) -> Vector2<f64> {
-    Vector2::new(angle.cos(), angle.sin())
 }
