@@ -5,9 +5,11 @@
 mod blackbox;
 pub mod csv;
 pub mod fly;
+mod format;
 pub mod lowpass;
 pub mod mapping;
 pub mod mcap;
+mod number;
 pub mod open;
 pub mod pilot;
 pub mod sensors;

@@ -1,5 +1,8 @@
 //! Comma-separated values, plain or gzipped, into one table.
 
+mod choose;
+pub mod files;
+
 use super::Readable;
 use super::table::Table;
 use crate::base::check::BadInput;

@@ -4,6 +4,8 @@
 mod format;
 
 use super::Readable;
+use super::format::{Content, File, Format};
+use super::mapping::Mapping;
 use super::table::{LOG_TIME, Table, Tables};
 use crate::base::check::BadInput;
 use format::{Formats, Leaf};
@@ -24,6 +26,27 @@ struct Reader<'a> {
     /// Topics by the number under which records name them.
     ids: HashMap<u16, String>,
     topics: HashMap<String, Topic>,
+}
+
+/// Logs of PX4.
+pub struct ULog;
+
+impl Format for ULog {
+    fn name(&self) -> &'static str {
+        "PX4 ULog"
+    }
+
+    fn recognises(&self, file: &File) -> bool {
+        file.bytes.starts_with(b"ULog")
+    }
+
+    fn mapping(&self, _: &File) -> Result<(&'static str, Option<String>), BadInput> {
+        Ok(("px4", None))
+    }
+
+    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
+        Ok(tables(file.bytes, file.name, &|topic| mapping.wanted(topic))?.into())
+    }
 }
 
 /// How reading ended early.

@@ -4,7 +4,8 @@ mod input;
 
 use super::bytes::Bytes;
 use super::column::Columns;
-use super::schema::{Fields, Number, Schema, Type};
+use super::schema::{Fields, Schema, Type};
+use crate::flight::number::Number;
 use input::Input;
 
 /// Longer lists are images and point clouds, not measurements of a vehicle.

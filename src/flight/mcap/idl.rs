@@ -2,7 +2,8 @@
 
 mod token;
 
-use super::schema::{Definition, Fields, Number, Schema, Type};
+use super::schema::{Definition, Fields, Schema, Type};
+use crate::flight::number::Number;
 use std::collections::HashMap;
 use token::{Token, tokens};
 

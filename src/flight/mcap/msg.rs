@@ -3,7 +3,8 @@
 //! Own code, because the crate that reads them panics on some defaults and refuses messages for constants it cannot read,
 //! which a decoder does not need.
 
-use super::schema::{Definition, Fields, Number, Schema, Type};
+use super::schema::{Definition, Fields, Schema, Type};
+use crate::flight::number::Number;
 use std::collections::HashMap;
 
 /// The layout of the message called `name`, such as `sensor_msgs/msg/Imu`.

@@ -103,16 +103,12 @@ impl<'w> Reader<'w> {
         Ok(())
     }
 
-    pub fn tables(self, readable: Readable) -> Tables {
+    /// The tables of wanted topics, and all topics by name.
+    pub fn finish(self, readable: Readable) -> (Tables, Vec<Topic>) {
         let tables = self.columns.into_iter().map(|(topic, columns)| (topic, columns.into_table())).collect();
-        Tables { tables, vehicle: self.vehicle, readable }
-    }
-
-    /// By name.
-    pub fn topics(self) -> Vec<Topic> {
         let mut topics: Vec<_> = self.channels.into_values().map(|channel| channel.topic).collect();
         topics.sort_by(|a, b| a.name.cmp(&b.name));
-        topics
+        (Tables { tables, vehicle: self.vehicle, readable }, topics)
     }
 }
 

@@ -1,36 +1,10 @@
 //! How a CDR message is laid out, whichever language its schema is written in.
 
+use crate::flight::number::Number;
 use std::collections::HashMap;
 
 /// Structs within structs that a message may have.
 const DEPTH: usize = 32;
-
-/// A number as CDR stores it, aligned to its size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Number {
-    Bool,
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
-}
-
-impl Number {
-    pub fn size(self) -> usize {
-        match self {
-            Self::Bool | Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
-    }
-}
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Type {
