@@ -22,7 +22,7 @@ use super::format::{Content, File, Format};
 use super::mapping::Mapping;
 use super::table::Tables;
 use crate::base::check::BadInput;
-use reader::Reader;
+use reader::TopicReader;
 
 /// MCAP files, of racer and of others.
 pub struct Mcap;
@@ -77,7 +77,7 @@ pub fn topics(bytes: &[u8]) -> Result<Vec<Topic>, BadInput> {
 
 /// The tables of the wanted topics, and all topics by name.
 fn read(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Result<(Tables, Vec<Topic>), BadInput> {
-    let mut reader = Reader::new(wanted);
+    let mut reader = TopicReader::new(wanted);
     let readable = file::walk(bytes, &mut |record| reader.record(record))?;
     Ok(reader.finish(readable))
 }

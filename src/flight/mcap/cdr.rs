@@ -4,7 +4,7 @@ mod input;
 
 use super::bytes::Bytes;
 use super::column::Columns;
-use super::schema::{Fields, Schema, Type};
+use super::schema::{CdrSchema, Fields, Type};
 use crate::flight::number::Number;
 use input::Input;
 
@@ -41,7 +41,7 @@ enum Node {
 }
 
 impl Decoder {
-    pub fn new(schema: Schema) -> Self {
+    pub fn new(schema: CdrSchema) -> Self {
         Self { structs: schema.structs, root: schema.root, plan: None, nodes: 0 }
     }
 

@@ -2,7 +2,7 @@
 
 use super::Limits;
 use super::cascade::Demand;
-use super::kind::Kind;
+use super::manoeuvre::Manoeuvre;
 use super::script::{Course, Flip, LowHover, Now, PunchTurns, RateSteps, Script, Segment, Sequenced, ThrottleSteps};
 use super::view::{View, wrapped};
 use crate::base::rng::Sequence;
@@ -32,78 +32,78 @@ const FASTEST: f64 = 20.0;
 
 impl Plan {
     /// The manoeuvre of this kind after `flown` others of it. The first is flown at full size, and directions alternate.
-    pub fn new(kind: Kind, flown: usize, view: &View, limits: &Limits, rng: &mut Sequence) -> Self {
+    pub fn new(kind: Manoeuvre, flown: usize, view: &View, limits: &Limits, rng: &mut Sequence) -> Self {
         let sign = if flown.is_multiple_of(2) { 1.0 } else { -1.0 };
         let share = if flown == 0 { 1.0 } else { rng.random() };
         let size = |low: f64| low + (1.0 - low) * share;
         match kind {
-            Kind::RollSteps | Kind::PitchSteps | Kind::YawSteps | Kind::RateSteps => {
+            Manoeuvre::RollSteps | Manoeuvre::PitchSteps | Manoeuvre::YawSteps | Manoeuvre::RateSteps => {
                 let axis = kind as usize;
                 let axes: [bool; 3] = std::array::from_fn(|i| axis == i || axis == 3);
                 over_spot(view, rng.uniform([25.0, 60.0]), Box::new(RateSteps::new(axes)))
             }
-            Kind::RollDoublets | Kind::PitchDoublets | Kind::YawDoublets => {
-                let axis = kind as usize - Kind::RollDoublets as usize;
+            Manoeuvre::RollDoublets | Manoeuvre::PitchDoublets | Manoeuvre::YawDoublets => {
+                let axis = kind as usize - Manoeuvre::RollDoublets as usize;
                 let script = Sequenced::doublets(axis, sign, limits, rng);
                 over_spot(view, rng.uniform([25.0, 60.0]), Box::new(script))
             }
-            Kind::RollFlip | Kind::PitchFlip => {
-                let axis = kind as usize - Kind::RollFlip as usize;
+            Manoeuvre::RollFlip | Manoeuvre::PitchFlip => {
+                let axis = kind as usize - Manoeuvre::RollFlip as usize;
                 let script = Flip::new(axis, sign * size(0.85), rng.uniform([-1.0, limits.hover_command]));
                 over_spot(view, rng.uniform([38.0, 60.0]), Box::new(script))
             }
-            Kind::YawSpin => {
+            Manoeuvre::YawSpin => {
                 let size = sign * size(0.5);
                 let spin = |size: f64| Segment { seconds: 0.9, command: Some([size, size]) };
                 over_spot(view, rng.uniform([25.0, 60.0]), Box::new(Sequenced::new(2, vec![spin(size), spin(-size)])))
             }
-            Kind::ThrottleSteps => over_spot(view, rng.uniform([35.0, 50.0]), Box::new(ThrottleSteps::new())),
-            Kind::Punch => {
+            Manoeuvre::ThrottleSteps => over_spot(view, rng.uniform([35.0, 50.0]), Box::new(ThrottleSteps::new())),
+            Manoeuvre::Punch => {
                 let seconds = rng.uniform([0.3, 1.0]);
                 over_spot(view, rng.uniform([16.0, 26.0]), throttle(&[(seconds, 1.0, 1.0), (0.3, -1.0, -1.0)]))
             }
-            Kind::PunchTurns => {
+            Manoeuvre::PunchTurns => {
                 let script = PunchTurns::new(sign * size(0.6), rng.uniform([0.15, 0.3]));
                 over_spot(view, rng.uniform([16.0, 24.0]), Box::new(script))
             }
-            Kind::LowHover => {
+            Manoeuvre::LowHover => {
                 let script = LowHover::new(rng.uniform([0.2, 0.35]));
                 Plan { low: true, ..over_spot(view, LOW_M, Box::new(script)) }
             }
-            Kind::Chop => {
+            Manoeuvre::Chop => {
                 let seconds = rng.uniform([0.5, 1.6]);
                 over_spot(view, rng.uniform([58.0, 68.0]), throttle(&[(seconds, -1.0, -1.0), (0.2, 1.0, 1.0)]))
             }
-            Kind::RampUp => {
+            Manoeuvre::RampUp => {
                 over_spot(view, rng.uniform([38.0, 48.0]), throttle(&[(rng.uniform([0.8, 2.0]), -1.0, 1.0)]))
             }
-            Kind::RampDown => {
+            Manoeuvre::RampDown => {
                 over_spot(view, rng.uniform([18.0, 28.0]), throttle(&[(rng.uniform([0.8, 2.0]), 1.0, -1.0)]))
             }
-            Kind::Forward | Kind::Backward | Kind::Left | Kind::Right => {
+            Manoeuvre::Forward | Manoeuvre::Backward | Manoeuvre::Left | Manoeuvre::Right => {
                 let nose = match kind {
-                    Kind::Forward => 0.0,
-                    Kind::Backward => PI,
-                    Kind::Left => FRAC_PI_2,
+                    Manoeuvre::Forward => 0.0,
+                    Manoeuvre::Backward => PI,
+                    Manoeuvre::Left => FRAC_PI_2,
                     _ => -FRAC_PI_2,
                 };
                 let speed = FASTEST * size(0.7);
                 let height = rng.uniform([22.0, 58.0]);
                 across(view, height, nose, rng, Course::new(speed, 0.0, 0.0, 3.2))
             }
-            Kind::Climb | Kind::Descent => {
+            Manoeuvre::Climb | Manoeuvre::Descent => {
                 let (height, vertical) = match kind {
-                    Kind::Climb => (14.0, 18.0 * size(0.5)),
+                    Manoeuvre::Climb => (14.0, 18.0 * size(0.5)),
                     _ => (70.0, -14.0 * size(0.3)),
                 };
                 let aside = rng.uniform([0.0, 6.0]);
                 across(view, height, 0.0, rng, Course::new(aside, vertical, 0.0, 3.8))
             }
-            Kind::Dive => {
+            Manoeuvre::Dive => {
                 let (speed, vertical) = (FASTEST * size(0.5), -rng.uniform([5.0, 12.0]));
                 across(view, 66.0, 0.0, rng, Course::new(speed, vertical, 0.0, 3.2))
             }
-            Kind::Circle => {
+            Manoeuvre::Circle => {
                 let (speed, radius) = (rng.uniform([10.0, 16.0]), rng.uniform([18.0, 28.0]));
                 let turn = sign * speed / radius;
                 across(view, rng.uniform([25.0, 55.0]), 0.0, rng, Course::new(speed, 0.0, turn, 4.0))
