@@ -17,6 +17,7 @@ pub mod series;
 pub mod spans;
 pub mod table;
 mod ulog;
+mod ulog_format;
 pub mod write;
 
 pub use open::{Options, open, open_with};

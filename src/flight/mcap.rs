@@ -5,11 +5,13 @@
 
 mod bytes;
 mod cdr;
+mod cdr_input;
 mod chunk;
 mod column;
 mod decoder;
 mod file;
 mod idl;
+mod idl_token;
 mod json;
 mod msg;
 mod protobuf;

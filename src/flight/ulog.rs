@@ -1,14 +1,12 @@
 //! PX4 ULog files: one table a topic, `topic#1` for its second instance. Read by ourselves: the library for it panics on
 //! damaged files, and unfolds a small hostile one into gigabytes.
 
-mod format;
-
 use super::Readable;
 use super::format::{Content, File, Format};
 use super::mapping::Mapping;
 use super::table::{LOG_TIME, Table, Tables};
+use super::ulog_format::{Formats, Leaf};
 use crate::base::check::BadInput;
-use format::{Formats, Leaf};
 use std::collections::{BTreeMap, HashMap};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";

@@ -1,12 +1,10 @@
 //! CDR messages, decoded by the schema that the file holds.
 
-mod input;
-
 use super::bytes::Bytes;
+use super::cdr_input::Input;
 use super::column::Columns;
 use super::schema::{CdrSchema, Fields, Type};
 use crate::flight::number::Number;
-use input::Input;
 
 /// Longer lists are images and point clouds, not measurements of a vehicle.
 pub const LIST: usize = 64;

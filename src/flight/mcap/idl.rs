@@ -1,11 +1,9 @@
 //! `ros2idl` schemas: the `.idl` files of a message and of the types it uses, in the part of OMG IDL that ROS 2 generates.
 
-mod token;
-
+use super::idl_token::{Token, tokens};
 use super::schema::{CdrSchema, Definition, Fields, Type};
 use crate::flight::number::Number;
 use std::collections::HashMap;
-use token::{Token, tokens};
 
 /// Sequences of sequences that a field may be.
 const NESTING: usize = 8;
