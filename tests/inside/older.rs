@@ -4,7 +4,7 @@
 use racer::base::lane::Level;
 use racer::race::config::{Config, Setting};
 use racer::race::env::Race;
-use racer::race::env::reset::Place;
+use racer::race::env::reset::StartPlace;
 use racer::race::eval::score::Benchmark;
 use racer::race::eval::{EvalConfig, benchmark};
 use racer::race::snapshot::Snapshot;
@@ -23,7 +23,7 @@ fn raced(agents: usize) -> Benchmark {
     assert_eq!(about.env, config(CONFIG, &[]).env);
     let race = Race::new(&about.env, &about.track, &about.vehicle, about.seed);
     let config = EvalConfig { agents, ..about.eval };
-    benchmark(Level::best(), &race, &about.track, &network, Place::Pad, &config).0
+    benchmark(Level::best(), &race, &about.track, &network, StartPlace::Pad, &config).0
 }
 
 /// What `racer eval --start fixed --agents 1` said at 73e7003: the nominal vehicle, no random number in its flight.
