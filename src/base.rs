@@ -1,6 +1,7 @@
 //! Numbers, random numbers, files: nothing of racing.
 
 pub mod check;
+pub mod claim;
 pub mod document;
 pub mod encode;
 pub mod error;

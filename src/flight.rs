@@ -5,9 +5,11 @@
 mod blackbox;
 pub mod csv;
 pub mod fly;
+mod format;
 pub mod lowpass;
 pub mod mapping;
 pub mod mcap;
+mod number;
 pub mod open;
 pub mod pilot;
 pub mod sensors;
@@ -15,6 +17,7 @@ pub mod series;
 pub mod spans;
 pub mod table;
 mod ulog;
+mod ulog_format;
 pub mod write;
 
 pub use open::{Options, open, open_with};

@@ -1,9 +1,5 @@
 //! Writing files: whole or not at all, and never over what exists, unless the program keeps it up to date itself.
 
-mod claim;
-
-pub use claim::Claim;
-
 use crate::base::check::BadInput;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -4,6 +4,9 @@
 //! threads, on the order of work or on the vector length.
 
 use crate::base::lane::{Bits, Lane32, Word};
+use rand::rand_core::block::{BlockRng, Generator};
+use rand::{RngExt, TryRng};
+use std::convert::Infallible;
 
 /// What a number is drawn for; streams never share numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,53 +68,52 @@ impl Philox {
 
     /// A sequence of numbers for one environment.
     pub fn sequence(&self, stream: Stream, environment: u32, step: u32) -> Sequence {
-        Sequence { rng: *self, counter: [0, environment, step, stream as u32], words: [0; 4], used: 4 }
+        Sequence(BlockRng::new(Counter { rng: *self, next: [0, environment, step, stream as u32] }))
     }
 }
 
-/// Numbers drawn one after another, for work that is not vectorised.
+/// Numbers drawn one after another, for work that is not vectorised: what the distributions of `rand` and `rand_distr`
+/// draw from.
 #[derive(Clone, Debug)]
-pub struct Sequence {
+pub struct Sequence(BlockRng<Counter>);
+
+/// The generator at its next counter.
+#[derive(Clone, Debug)]
+struct Counter {
     rng: Philox,
-    counter: [u32; 4],
-    words: [u32; 4],
-    used: usize,
+    next: [u32; 4],
+}
+
+impl Generator for Counter {
+    type Output = [u32; 4];
+
+    fn generate(&mut self, words: &mut [u32; 4]) {
+        *words = self.rng.words(self.next);
+        self.next[0] += 1;
+    }
+}
+
+impl TryRng for Sequence {
+    type Error = Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        Ok(self.0.next_word())
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        Ok(self.0.next_u64_from_u32())
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        self.0.fill_bytes(bytes);
+        Ok(())
+    }
 }
 
 impl Sequence {
-    pub fn word(&mut self) -> u32 {
-        if self.used == 4 {
-            self.words = self.rng.words(self.counter);
-            self.counter[0] += 1;
-            self.used = 0;
-        }
-        self.used += 1;
-        self.words[self.used - 1]
-    }
-
-    /// Uniform in [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        self.word() as f64 / 4_294_967_296.0
-    }
-
-    /// Uniform in [low, high).
+    /// Uniform over a configured range `[low, high]`, which may be a single number.
     pub fn uniform(&mut self, [low, high]: [f64; 2]) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// Standard normal (Box-Muller).
-    pub fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.unit()).cos()
-    }
-
-    /// Shuffles `items` (Fisher-Yates).
-    pub fn shuffle<T>(&mut self, items: &mut [T]) {
-        for i in (1..items.len()).rev() {
-            // The bias of multiply-and-shift is below i / 2^32.
-            let j = (self.word() as u64 * (i as u64 + 1)) >> 32;
-            items.swap(i, j as usize);
-        }
+        self.random_range(low..=high)
     }
 }
 
@@ -143,6 +145,8 @@ pub fn coarse_normals<L: Lane32>(a: L::Bits) -> (L, L) {
 mod tests {
     use super::*;
     use crate::base::lane::{Kernel, Level, dispatch};
+    use rand::Rng;
+    use rand_distr::StandardNormal;
 
     /// The known answers published with the generator (Random123, philox4x32, 10 rounds).
     #[test]
@@ -153,6 +157,36 @@ mod tests {
         let pi = Philox { key: [0xa4093822, 0x299f31d0] };
         let counter = [0x243f6a88u32, 0x85a308d3, 0x13198a2e, 0x03707344];
         assert_eq!(pi.words(counter), [0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1]);
+    }
+
+    /// A sequence is the generator's words in their order, however they are asked for.
+    #[test]
+    fn sequences_are_the_words_in_order() {
+        let philox = Philox::new(7);
+        let words: Vec<u32> = (0..3u32).flat_map(|i| philox.words([i, 5, 9, Stream::Reset as u32])).collect();
+        let mut one = philox.sequence(Stream::Reset, 5, 9);
+        assert_eq!((0..12).map(|_| one.next_u32()).collect::<Vec<_>>(), words);
+        let mut two = philox.sequence(Stream::Reset, 5, 9);
+        assert_eq!(two.next_u32(), words[0]);
+        assert_eq!((0..5).map(|_| two.next_u64()).collect::<Vec<_>>(), {
+            let pairs = words[1..11].chunks(2).map(|w| u64::from(w[0]) | u64::from(w[1]) << 32);
+            pairs.collect::<Vec<_>>()
+        });
+    }
+
+    #[test]
+    fn scalar_distributions_have_their_moments() {
+        let mut rng = Philox::new(11).sequence(Stream::Reset, 0, 0);
+        let n = 200_000;
+        let moments = |x: Vec<f64>| [1, 2, 3, 4].map(|k| x.iter().map(|x| x.powi(k)).sum::<f64>() / x.len() as f64);
+        // Five standard errors of each.
+        let [m1, m2, m3, m4] = moments((&mut rng).sample_iter(StandardNormal).take(n).collect());
+        assert!(m1.abs() < 0.012 && (m2 - 1.0).abs() < 0.016, "{m1} {m2}");
+        assert!(m3.abs() < 0.044 && (m4 - 3.0).abs() < 0.11, "{m3} {m4}");
+        let [m1, m2, m3, m4] = moments((0..n).map(|_| rng.uniform([-1.0, 1.0])).collect());
+        assert!(m1.abs() < 0.0065 && (m2 - 1.0 / 3.0).abs() < 0.0034, "{m1} {m2}");
+        assert!(m3.abs() < 0.0043 && (m4 - 0.2).abs() < 0.003, "{m3} {m4}");
+        assert_eq!(rng.uniform([1.0, 1.0]), 1.0);
     }
 
     struct Moments;

@@ -6,7 +6,7 @@ use crate::base::document::nearest;
 use crate::base::fsio::Reserved;
 use crate::base::lane::Level;
 use crate::flight::fly::{Flown, by_pilot, by_policy, check_pilot};
-use crate::flight::pilot::Kind;
+use crate::flight::pilot::Manoeuvre;
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Stream, write};
 use crate::model::track::Track;
@@ -61,7 +61,7 @@ Examples:
 
 /// The help with the names of all manoeuvres.
 fn help() -> String {
-    let names: Vec<_> = Kind::ALL.into_iter().map(Kind::name).collect();
+    let names: Vec<_> = Manoeuvre::ALL.into_iter().map(Manoeuvre::name).collect();
     format!("{HELP}\n\nManoeuvres: {}", names.join(", "))
 }
 
@@ -112,9 +112,9 @@ fn fly_pilot(args: &Args, sensors: &SensorConfig) -> anyhow::Result<Flown> {
     Ok(flown)
 }
 
-fn named(name: &str) -> Result<Kind, BadInput> {
-    Kind::named(name).ok_or_else(|| {
-        let advice = match nearest(name, Kind::ALL.into_iter().map(Kind::name)) {
+fn named(name: &str) -> Result<Manoeuvre, BadInput> {
+    Manoeuvre::named(name).ok_or_else(|| {
+        let advice = match nearest(name, Manoeuvre::ALL.into_iter().map(Manoeuvre::name)) {
             Some(near) => format!("did you mean `{near}`? `racer fly --help` lists them"),
             None => "`racer fly --help` lists them".into(),
         };

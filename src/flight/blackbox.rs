@@ -6,6 +6,8 @@
 mod fields;
 mod header;
 
+use super::format::{Content, File, Format};
+use super::mapping::Mapping;
 use super::table::{LOG_TIME, Tables};
 use super::{Readable, VehicleRecord};
 use crate::base::check::BadInput;
@@ -27,6 +29,33 @@ const MARKER: &[u8] = b"H Product:Blackbox flight data recorder by Nicholas Sher
 struct Flight {
     tables: Tables,
     span_s: f64,
+}
+
+/// Blackbox logs.
+pub struct Blackbox;
+
+impl Format for Blackbox {
+    fn name(&self) -> &'static str {
+        "Betaflight blackbox"
+    }
+
+    fn recognises(&self, file: &File) -> bool {
+        let begun = b"H Product:Blackbox";
+        file.start().windows(begun.len()).any(|window| window == begun) || file.ends(&[".bbl", ".bfl"])
+    }
+
+    fn mapping(&self, _: &File) -> Result<(&'static str, Option<String>), BadInput> {
+        Ok(("betaflight", None))
+    }
+
+    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
+        let (tables, remarks) = tables(file.bytes, file.name, &mapping.columns(), file.flight)?;
+        Ok(Content { tables, remarks })
+    }
+
+    fn has_flights(&self) -> bool {
+        true
+    }
 }
 
 /// Reads `flight`, counted from 1, or else the longest: the (table, column) pairs that are `wanted`. Standard fields that

@@ -1,5 +1,8 @@
 //! Comma-separated values, plain or gzipped, into one table.
 
+mod choose;
+pub mod files;
+
 use super::Readable;
 use super::table::Table;
 use crate::base::check::BadInput;
@@ -44,7 +47,7 @@ impl Read for Source<'_> {
     }
 }
 
-type Reader<'a> = csv::Reader<Source<'a>>;
+type CsvReader<'a> = csv::Reader<Source<'a>>;
 
 /// The columns that the file `name` has.
 pub fn header(bytes: &[u8], name: &str) -> Result<Vec<String>, BadInput> {
@@ -84,7 +87,7 @@ pub fn table(bytes: &[u8], name: &str, wanted: &BTreeSet<&str>) -> Result<(Table
     Ok((Table { columns }, readable))
 }
 
-fn open<'a>(bytes: &'a [u8], name: &str) -> Result<(Reader<'a>, Vec<String>), BadInput> {
+fn open<'a>(bytes: &'a [u8], name: &str) -> Result<(CsvReader<'a>, Vec<String>), BadInput> {
     let delimiter = delimiter(bytes);
     let mut builder = csv::ReaderBuilder::new();
     let mut reader = builder.trim(csv::Trim::All).delimiter(delimiter).from_reader(Source::new(bytes));
@@ -134,10 +137,10 @@ fn not_a_number(name: &str, record: &ByteRecord, column: &str, cell: &[u8]) -> B
 }
 
 /// A file that breaks off was read up to there; anything else is an error.
-fn broken(error: csv::Error, reader: &mut Reader, bytes: &[u8], name: &str) -> Result<Readable, BadInput> {
+fn broken(error: csv::Error, reader: &mut CsvReader, bytes: &[u8], name: &str) -> Result<Readable, BadInput> {
     let of = bytes.len() as u64;
     let line = error.position().map_or(0, csv::Position::line);
-    let prefix = |reader: &Reader, why| Ok(Readable::Prefix { bytes: of - reader.get_ref().left() as u64, of, why });
+    let prefix = |reader: &CsvReader, why| Ok(Readable::Prefix { bytes: of - reader.get_ref().left() as u64, of, why });
     match error.kind() {
         ErrorKind::Io(error) => prefix(reader, format!("the gzip stream breaks off: {error}")),
         ErrorKind::UnequalLengths { expected_len, len, .. } => {

@@ -5,11 +5,13 @@
 
 mod bytes;
 mod cdr;
+mod cdr_input;
 mod chunk;
 mod column;
 mod decoder;
 mod file;
 mod idl;
+mod idl_token;
 mod json;
 mod msg;
 mod protobuf;
@@ -18,9 +20,38 @@ mod record;
 mod schema;
 pub(super) mod vehicle;
 
+use super::format::{Content, File, Format};
+use super::mapping::Mapping;
 use super::table::Tables;
 use crate::base::check::BadInput;
-use reader::Reader;
+use reader::TopicReader;
+
+/// MCAP files, of racer and of others.
+pub struct Mcap;
+
+impl Format for Mcap {
+    fn name(&self) -> &'static str {
+        "MCAP"
+    }
+
+    fn recognises(&self, file: &File) -> bool {
+        file.bytes.starts_with(b"\x89MCAP")
+    }
+
+    fn mapping(&self, _: &File) -> Result<(&'static str, Option<String>), BadInput> {
+        Ok(("canonical", None))
+    }
+
+    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
+        let within = |error: BadInput| BadInput { place: format!("{}, {}", file.name, error.place), ..error };
+        let wanted = |topic: &str| mapping.wanted(topic);
+        let (mut tables, topics) = read(file.bytes, &wanted).map_err(within)?;
+        for topic in topics {
+            tables.tables.entry(topic.name).or_default();
+        }
+        Ok(tables.into())
+    }
+}
 
 /// A topic of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,14 +69,17 @@ pub struct Topic {
 ///
 /// A file that breaks off gives what came before. An error if the bytes are no MCAP file, or a wanted topic cannot be decoded.
 pub fn tables(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Result<Tables, BadInput> {
-    let mut reader = Reader::new(wanted);
-    let readable = file::walk(bytes, &mut |record| reader.record(record))?;
-    Ok(reader.tables(readable))
+    Ok(read(bytes, wanted)?.0)
 }
 
 /// The topics of a file, by name, as far as it can be read. An error if the bytes are no MCAP file.
 pub fn topics(bytes: &[u8]) -> Result<Vec<Topic>, BadInput> {
-    let mut reader = Reader::new(&|_| false);
-    file::walk(bytes, &mut |record| reader.record(record))?;
-    Ok(reader.topics())
+    Ok(read(bytes, &|_| false)?.1)
+}
+
+/// The tables of the wanted topics, and all topics by name.
+fn read(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Result<(Tables, Vec<Topic>), BadInput> {
+    let mut reader = TopicReader::new(wanted);
+    let readable = file::walk(bytes, &mut |record| reader.record(record))?;
+    Ok(reader.finish(readable))
 }

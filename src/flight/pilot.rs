@@ -6,16 +6,17 @@
 
 pub mod bounds;
 mod cascade;
-pub mod kind;
+pub mod manoeuvre;
 mod plan;
 mod script;
 mod view;
 
 use crate::base::rng::{Philox, Sequence, Stream};
 use cascade::{Cascade, Demand};
-pub use kind::Kind;
+pub use manoeuvre::Manoeuvre;
 use nalgebra::Vector3;
 use plan::Plan;
+use rand::seq::SliceRandom;
 use script::Now;
 use view::View;
 
@@ -70,11 +71,11 @@ enum Phase {
 #[derive(Debug)]
 pub struct Pilot {
     limits: Limits,
-    kinds: Vec<Kind>,
+    kinds: Vec<Manoeuvre>,
     /// Kinds left of this round, last first.
-    deck: Vec<Kind>,
+    deck: Vec<Manoeuvre>,
     /// How often each kind was planned.
-    flown: [usize; Kind::ALL.len()],
+    flown: [usize; Manoeuvre::ALL.len()],
     rng: Sequence,
     cascade: Cascade,
     /// Where the first command was asked for: the origin of its box.
@@ -91,9 +92,12 @@ impl Pilot {
         Self {
             limits,
             // A low hover shows nothing but the ground effect: a short flight has no time for it.
-            kinds: Kind::ALL.into_iter().filter(|kind| limits.seconds > LONG_S || *kind != Kind::LowHover).collect(),
+            kinds: Manoeuvre::ALL
+                .into_iter()
+                .filter(|kind| limits.seconds > LONG_S || *kind != Manoeuvre::LowHover)
+                .collect(),
             deck: Vec::new(),
-            flown: [0; Kind::ALL.len()],
+            flown: [0; Manoeuvre::ALL.len()],
             rng: Philox::new(seed).sequence(Stream::Pilot, 0, 0),
             cascade: Cascade::new(&limits),
             origin: None,
@@ -104,7 +108,7 @@ impl Pilot {
     }
 
     /// Flies `kinds` only; all of them where none is named.
-    pub fn only(mut self, kinds: &[Kind]) -> Self {
+    pub fn only(mut self, kinds: &[Manoeuvre]) -> Self {
         if !kinds.is_empty() {
             self.kinds = kinds.to_vec();
         }
@@ -157,13 +161,13 @@ impl Pilot {
     fn plan(&mut self, view: &View) -> Plan {
         if self.deck.is_empty() {
             let (mut early, mut late): (Vec<_>, Vec<_>) = self.kinds.iter().partition(|kind| kind.early());
-            self.rng.shuffle(&mut early);
-            self.rng.shuffle(&mut late);
+            early.shuffle(&mut self.rng);
+            late.shuffle(&mut self.rng);
             // Drawn from the end.
             self.deck = [late, early].concat();
         }
         // The deck was just filled, and never with nothing.
-        let kind = self.deck.pop().unwrap_or(Kind::RateSteps);
+        let kind = self.deck.pop().unwrap_or(Manoeuvre::RateSteps);
         let time = &mut self.flown[kind as usize];
         *time += 1;
         Plan::new(kind, *time - 1, view, &self.limits, &mut self.rng)

@@ -3,6 +3,8 @@
 use crate::base::check::{BadInput, Check, Invalid};
 use crate::base::document::Library;
 use crate::base::rng::Sequence;
+use rand::RngExt;
+use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 
 const LIBRARY: Library = Library {
@@ -101,13 +103,13 @@ impl SensorConfig {
 impl Channel {
     /// Draws the constant error of a flight.
     pub fn draw_bias<const N: usize>(&self, rng: &mut Sequence) -> [f64; N] {
-        std::array::from_fn(|_| self.bias * rng.normal())
+        std::array::from_fn(|_| self.bias * rng.sample::<f64, _>(StandardNormal))
     }
 
     /// What is read of `truth`.
     pub fn read<const N: usize>(&self, truth: [f64; N], bias: [f64; N], rng: &mut Sequence) -> [f64; N] {
         std::array::from_fn(|i| {
-            let x = truth[i] + bias[i] + self.noise * rng.normal();
+            let x = truth[i] + bias[i] + self.noise * rng.sample::<f64, _>(StandardNormal);
             let x = if self.step > 0.0 { (x / self.step).round() * self.step } else { x };
             x.clamp(-self.range, self.range)
         })

@@ -1,33 +1,54 @@
 //! PX4 ULog files: one table a topic, `topic#1` for its second instance. Read by ourselves: the library for it panics on
 //! damaged files, and unfolds a small hostile one into gigabytes.
 
-mod format;
-
 use super::Readable;
+use super::format::{Content, File, Format};
+use super::mapping::Mapping;
 use super::table::{LOG_TIME, Table, Tables};
+use super::ulog_format::{Formats, Leaf};
 use crate::base::check::BadInput;
-use format::{Formats, Leaf};
 use std::collections::{BTreeMap, HashMap};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
 const HEADER_BYTES: usize = 16;
 
 /// A topic whose records are read.
-struct Topic {
+struct TopicColumns {
     leaves: Vec<Leaf>,
     columns: Vec<Vec<f64>>,
 }
 
 #[derive(Default)]
-struct Reader<'a> {
+struct LogReader<'a> {
     formats: Formats<'a>,
     /// Topics by the number under which records name them.
     ids: HashMap<u16, String>,
-    topics: HashMap<String, Topic>,
+    topics: HashMap<String, TopicColumns>,
+}
+
+/// Logs of PX4.
+pub struct ULog;
+
+impl Format for ULog {
+    fn name(&self) -> &'static str {
+        "PX4 ULog"
+    }
+
+    fn recognises(&self, file: &File) -> bool {
+        file.bytes.starts_with(b"ULog")
+    }
+
+    fn mapping(&self, _: &File) -> Result<(&'static str, Option<String>), BadInput> {
+        Ok(("px4", None))
+    }
+
+    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
+        Ok(tables(file.bytes, file.name, &|topic| mapping.wanted(topic))?.into())
+    }
 }
 
 /// How reading ended early.
-enum Stop {
+enum EarlyEnd {
     BreaksOff,
     Bad(String),
 }
@@ -40,17 +61,17 @@ pub fn tables(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result
     }
     let mut ends = appended(bytes).map_err(|why| BadInput::new(name, why, "a ULog file of a known kind", ""))?;
     ends.push(bytes.len());
-    let mut reader = Reader::default();
+    let mut reader = LogReader::default();
     let (mut position, mut readable) = (HEADER_BYTES, Readable::Whole);
     for end in ends {
         match reader.section(&bytes[..end], &mut position, wanted) {
             Ok(()) => {}
             // What was appended after a crash starts anew, wherever the crash cut off what was before.
-            Err(Stop::BreaksOff) if end < bytes.len() => position = end,
+            Err(EarlyEnd::BreaksOff) if end < bytes.len() => position = end,
             Err(stop) => {
                 let why = match stop {
-                    Stop::BreaksOff => "the last message breaks off".into(),
-                    Stop::Bad(why) => why,
+                    EarlyEnd::BreaksOff => "the last message breaks off".into(),
+                    EarlyEnd::Bad(why) => why,
                 };
                 readable = Readable::Prefix { bytes: position as u64, of: bytes.len() as u64, why };
                 break;
@@ -81,14 +102,19 @@ fn appended(bytes: &[u8]) -> Result<Vec<usize>, String> {
     Ok(starts)
 }
 
-impl<'a> Reader<'a> {
+impl<'a> LogReader<'a> {
     /// Reads messages to the end of `bytes`; `position` is left at the first one that cannot be read.
-    fn section(&mut self, bytes: &'a [u8], position: &mut usize, wanted: &dyn Fn(&str) -> bool) -> Result<(), Stop> {
+    fn section(
+        &mut self,
+        bytes: &'a [u8],
+        position: &mut usize,
+        wanted: &dyn Fn(&str) -> bool,
+    ) -> Result<(), EarlyEnd> {
         while *position < bytes.len() {
-            let [low, high, kind, rest @ ..] = &bytes[*position..] else { return Err(Stop::BreaksOff) };
+            let [low, high, kind, rest @ ..] = &bytes[*position..] else { return Err(EarlyEnd::BreaksOff) };
             let size = usize::from(u16::from_le_bytes([*low, *high]));
-            let payload = rest.get(..size).ok_or(Stop::BreaksOff)?;
-            self.message(*kind, payload, wanted).map_err(Stop::Bad)?;
+            let payload = rest.get(..size).ok_or(EarlyEnd::BreaksOff)?;
+            self.message(*kind, payload, wanted).map_err(EarlyEnd::Bad)?;
             *position += 3 + size;
         }
         Ok(())
@@ -112,7 +138,7 @@ impl<'a> Reader<'a> {
         if wanted(&topic) && !self.topics.contains_key(&topic) {
             let leaves = self.formats.leaves(name)?;
             let columns = vec![Vec::new(); leaves.len()];
-            self.topics.insert(topic.clone(), Topic { leaves, columns });
+            self.topics.insert(topic.clone(), TopicColumns { leaves, columns });
         }
         self.ids.insert(u16::from_le_bytes([*low, *high]), topic);
         Ok(())

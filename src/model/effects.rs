@@ -226,7 +226,7 @@ mod tests {
         for card in cards() {
             assert!(!card.manoeuvre.1.is_empty(), "{}", card.id);
             for kind in card.manoeuvre.1 {
-                assert!(crate::flight::pilot::Kind::named(kind).is_some(), "{}: {kind}", card.id);
+                assert!(crate::flight::pilot::Manoeuvre::named(kind).is_some(), "{}: {kind}", card.id);
             }
         }
     }

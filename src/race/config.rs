@@ -1,8 +1,10 @@
 //! The configuration of a training run: one TOML file, changed from the command line, checked as a whole.
 //!
 //! A file needs to hold only what differs from the built-in `a2rl.toml`, which sets every key. Each table is a struct in the
-//! module that uses it; this module only puts them together.
+//! module that uses it; this module only puts them together. The file of a run sets every key; in one that an older racer
+//! wrote, keys that came later have their old meaning ([`later`]).
 
+pub mod later;
 mod layers;
 mod setting;
 

@@ -267,7 +267,7 @@ impl<L: Lane32> Block<L> {
         let change: [L; 4] = build!(|i| action[i] - self.history[0][i]);
         let terms = reward::terms(
             &config.reward,
-            &reward::Step {
+            &reward::Inputs {
                 distance,
                 passed: crossing.passed,
                 timed_out,
@@ -275,7 +275,8 @@ impl<L: Lane32> Block<L> {
                 facing: -dot(forward, after) / distance[1].max(L::of(1e-3)),
                 action_change: sum_of_squares(change),
             },
-        );
+        )
+        .in_order();
         let mut reward = terms[0];
         for &term in &terms[1..] {
             reward = reward + term;

@@ -1,28 +1,23 @@
 //! A policy on disk: the network as safetensors, with everything needed to fly it again in the same file.
 
+mod metadata;
 mod self_test;
+mod tensors;
 
 use crate::base::check::{BadInput, Check, Invalid};
 use crate::base::error::Error;
 use crate::base::fsio;
-use crate::learn::nn::mlp::Shape;
-use crate::learn::nn::{HIDDEN, Layer, Network};
+use crate::learn::nn::Network;
 use crate::learn::policy::ACTIONS;
-use crate::model::constants::CONTROL_S;
 use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
-use crate::race::env::observe::{OBSERVATIONS, layout};
+use crate::race::env::observe::OBSERVATIONS;
 use crate::race::env::{EnvConfig, Race};
 use crate::race::eval::EvalConfig;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView, serialize};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::Path;
-
-/// Changes with every change that makes older files unreadable.
-const FORMAT: &str = "racer-policy-1";
-/// The metadata's only key: safetensors keeps no order among several, and files are to repeat bit for bit.
-const METADATA: &str = "racer";
 
 /// A policy and where it comes from.
 #[derive(Clone, Debug)]
@@ -54,35 +49,6 @@ impl Check for About {
     }
 }
 
-/// The metadata as it is written.
-#[derive(Serialize, Deserialize)]
-struct Metadata {
-    format: String,
-    /// Rate at which the policy is to be asked, Hz.
-    control_rate_hz: f64,
-    /// What goes in: [`layout`]. Kept as JSON, because a file may have been written by another version.
-    observation: serde_json::Value,
-    /// What comes out, after the tanh, each in [-1, 1].
-    action: [String; ACTIONS],
-    about: About,
-}
-
-impl Metadata {
-    fn new(about: &About) -> Self {
-        Self {
-            format: FORMAT.into(),
-            control_rate_hz: (1.0 / CONTROL_S).round(),
-            observation: observation(&about.vehicle),
-            action: ["roll rate", "pitch rate", "yaw rate", "collective thrust"].map(String::from),
-            about: about.clone(),
-        }
-    }
-}
-
-fn observation(vehicle: &Vehicle) -> serde_json::Value {
-    serde_json::to_value(layout(&vehicle.battery)).unwrap_or_default()
-}
-
 impl Snapshot {
     /// The race that the policy was trained for, in another vehicle if one is given, which the policy takes for its own.
     pub fn race(&self, vehicle: Option<&Vehicle>) -> Race {
@@ -98,18 +64,18 @@ impl Snapshot {
     /// The file's content; the same policy always gives the same bytes.
     pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
         let (observations, actions) = self_test::vectors(&self.network);
-        let mut tensors: Vec<(String, Vec<usize>, Vec<u8>)> = tensors(&self.network)
+        let mut all: Vec<(String, Vec<usize>, Vec<u8>)> = tensors::of(&self.network)
             .into_iter()
-            .map(|(name, shape, numbers)| (name, shape, bytes_of(&numbers)))
+            .map(|(name, shape, numbers)| (name, shape, tensors::bytes(&numbers)))
             .collect();
         let samples = self_test::SAMPLES;
-        tensors.push(("self_test.observation".into(), vec![samples, OBSERVATIONS], bytes_of(&observations)));
-        tensors.push(("self_test.action".into(), vec![samples, ACTIONS], bytes_of(&actions)));
-        let views: Result<Vec<_>, _> = tensors
+        all.push(("self_test.observation".into(), vec![samples, OBSERVATIONS], tensors::bytes(&observations)));
+        all.push(("self_test.action".into(), vec![samples, ACTIONS], tensors::bytes(&actions)));
+        let views: Result<Vec<_>, _> = all
             .iter()
             .map(|(name, shape, bytes)| Ok((name, TensorView::new(Dtype::F32, shape.clone(), bytes)?)))
             .collect::<Result<_, safetensors::SafeTensorError>>();
-        let metadata = serde_json::to_string(&Metadata::new(&self.about)).map_err(Error::encode("the policy"))?;
+        let metadata = metadata::write(&self.about).map_err(Error::encode("the policy"))?;
         let file = views.and_then(|views| serialize(views, Some(HashMap::from([(METADATA.into(), metadata)]))));
         file.map_err(Error::encode("the policy"))
     }
@@ -127,83 +93,24 @@ impl Snapshot {
     fn from_bytes(bytes: &[u8]) -> Result<Self, Invalid> {
         let about = read_about(bytes)?;
         let file = SafeTensors::deserialize(bytes).map_err(|error| Invalid::new("file", error, "", ""))?;
-        let network = read_network(&file)?;
+        let network = tensors::read_network(&file)?;
         let samples = self_test::SAMPLES;
-        let observations = read_tensor(&file, "self_test.observation", &[samples, OBSERVATIONS])?;
-        let actions = read_tensor(&file, "self_test.action", &[samples, ACTIONS])?;
+        let observations = tensors::read(&file, "self_test.observation", &[samples, OBSERVATIONS])?;
+        let actions = tensors::read(&file, "self_test.action", &[samples, ACTIONS])?;
         self_test::check(&network, &observations, &actions)?;
         Ok(Self { network, about })
     }
 }
 
+/// The metadata's only key: safetensors keeps no order among several, and files are to repeat bit for bit.
+const METADATA: &str = "racer";
+
 fn read_about(bytes: &[u8]) -> Result<About, Invalid> {
-    let bad = |found: String| Invalid::new("metadata", found, "", "it was written by another program or version");
-    let other = |error| Invalid::new("file", error, "", "name a run folder, or a file in its snapshots/");
-    let (_, header) = SafeTensors::read_metadata(bytes).map_err(other)?;
+    let advice = "name a run folder, or a file in its snapshots/";
+    let (_, header) = SafeTensors::read_metadata(bytes).map_err(|error| Invalid::new("file", error, "", advice))?;
     let text = header.metadata().as_ref().and_then(|map| map.get(METADATA));
-    let text = text.ok_or_else(|| bad(format!("no `{METADATA}` entry")))?;
-    let metadata: Metadata = serde_json::from_str(text).map_err(|error| bad(error.to_string()))?;
-    if metadata.format != FORMAT {
-        return Err(bad(format!("format {}, not {FORMAT}", metadata.format)));
-    }
-    if metadata.observation != observation(&metadata.about.vehicle) {
-        return Err(bad("another observation layout than this version's".into()));
-    }
-    metadata.about.check().map_err(|invalid| invalid.within("metadata.about"))?;
-    Ok(metadata.about)
-}
-
-/// The networks by name.
-fn networks(network: &Network<f32>) -> [(&'static str, Shape); 2] {
-    [("actor", network.actor.clone()), ("critic", network.critic.clone())]
-}
-
-/// Names, shapes and numbers of the network's tensors.
-fn tensors(network: &Network<f32>) -> Vec<(String, Vec<usize>, Vec<f32>)> {
-    let mut all = Vec::new();
-    for (name, shape) in networks(network) {
-        for index in 0..3 {
-            let Layer { weights, biases } = network.layer(&shape, index);
-            let outputs = biases.len();
-            all.push((format!("{name}.{index}.weight"), vec![weights.len() / outputs, outputs], weights));
-            all.push((format!("{name}.{index}.bias"), vec![outputs], biases));
-        }
-    }
-    all.push(("log_std".into(), vec![ACTIONS], network.log_std().to_vec()));
-    all
-}
-
-/// The network that [`tensors`] was made of.
-fn read_network(file: &SafeTensors) -> Result<Network<f32>, Invalid> {
-    let mut network = Network::zeros(OBSERVATIONS);
-    for (name, shape) in networks(&network) {
-        for index in 0..3 {
-            let inputs = if index == 0 { shape.inputs } else { HIDDEN };
-            let outputs = if index == 2 { shape.outputs } else { HIDDEN };
-            let weights = read_tensor(file, &format!("{name}.{index}.weight"), &[inputs, outputs])?;
-            let biases = read_tensor(file, &format!("{name}.{index}.bias"), &[outputs])?;
-            network.set_layer(&shape, index, &Layer { weights, biases });
-        }
-    }
-    let log_std = network.log_std_range();
-    network.parameters[log_std].copy_from_slice(&read_tensor(file, "log_std", &[ACTIONS])?);
-    Ok(network)
-}
-
-fn bytes_of(numbers: &[f32]) -> Vec<u8> {
-    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
-}
-
-fn read_tensor(file: &SafeTensors, name: &str, shape: &[usize]) -> Result<Vec<f32>, Invalid> {
-    let tensor = file.tensor(name).map_err(|error| Invalid::new(name, error, "", ""))?;
-    if tensor.dtype() != Dtype::F32 || tensor.shape() != shape {
-        let found = format!("{:?} of shape {:?}, not F32 of {shape:?}", tensor.dtype(), tensor.shape());
-        return Err(Invalid::new(name, found, "", ""));
-    }
-    let numbers = tensor.data().chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    let numbers: Vec<f32> = numbers.collect();
-    Invalid::unless(numbers.iter().all(|x| x.is_finite()), name, "numbers that are not finite", "", "")?;
-    Ok(numbers)
+    let text = text.ok_or_else(|| Invalid::new("metadata", format!("no entry `{METADATA}`"), "", advice))?;
+    metadata::read(text).map_err(|invalid| invalid.within("metadata"))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use racer::base::lane::Level;
 use racer::base::rng::{Philox, Stream};
 use racer::flight::fly::{by_pilot, by_policy};
-use racer::flight::pilot::Kind;
+use racer::flight::pilot::Manoeuvre;
 use racer::flight::sensors::SensorConfig;
 use racer::learn::nn::Network;
 use racer::model::constants::CONTROL_S;
@@ -45,7 +45,7 @@ fn the_pilot_takes_off_flies_and_lands_before_the_battery_is_empty() {
 /// What is felt is what moves: integrated specific force and gravity give the recorded velocities.
 #[test]
 fn specific_force_is_the_acceleration() {
-    let flown = by_pilot(&seed_class(), &sensors("ideal"), &[Kind::Forward, Kind::RollFlip], 3, 60.0);
+    let flown = by_pilot(&seed_class(), &sensors("ideal"), &[Manoeuvre::Forward, Manoeuvre::RollFlip], 3, 60.0);
     let log = &flown.log;
     assert_eq!(log.imu.time_s[5000], 10.0);
     let in_world = |row: &[f64; 10], v: [f64; 3]| {

@@ -7,6 +7,8 @@ use racer::learn::policy::log_prob_of;
 use racer::learn::ppo::batch::Batch;
 use racer::learn::ppo::loss::Weights;
 use racer::learn::ppo::update::Updater;
+use rand::RngExt;
+use rand_distr::StandardNormal;
 
 const ROWS: usize = 5;
 const INPUTS: usize = 11;
@@ -20,14 +22,20 @@ fn example() -> (Network<f64>, [Vec<f64>; 5]) {
             let mut layer = network.layer(&shape, index);
             // A small head keeps the means near zero, where `old` below is about the log-probability.
             let size = if index == 2 { 0.02 } else { 0.2 };
-            layer.weights.iter_mut().chain(&mut layer.biases).for_each(|w| *w = size * rng.normal());
+            layer
+                .weights
+                .iter_mut()
+                .chain(&mut layer.biases)
+                .for_each(|w| *w = size * rng.sample::<f64, _>(StandardNormal));
             network.set_layer(&shape, index, &layer);
         }
     }
     let log_std = network.log_std_range();
     let log_stds = [-0.5, -0.2, -0.9, 0.1];
     network.parameters[log_std].copy_from_slice(&log_stds);
-    let mut normals = |n: usize, mean: f64, sd: f64| (0..n).map(|_| mean + sd * rng.normal()).collect::<Vec<_>>();
+    let mut normals = |n: usize, mean: f64, sd: f64| {
+        (0..n).map(|_| mean + sd * rng.sample::<f64, _>(StandardNormal)).collect::<Vec<_>>()
+    };
     let rows = ROWS * LANES;
     let (x, z) = (normals(rows * INPUTS, 0.0, 1.0), normals(rows * 4, 0.0, 0.7));
     let mut old = normals(rows, 0.0, 0.3);

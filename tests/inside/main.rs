@@ -12,6 +12,7 @@ mod hidden_effects;
 mod lane;
 mod mappings;
 mod mcap;
+mod older;
 mod python;
 mod quality;
 mod race;

@@ -2,7 +2,8 @@
 
 use super::child::{self, ChildEnd, ChildTraining};
 use super::display::Display;
-use crate::base::fsio::{self, Claim};
+use crate::base::claim::Claim;
+use crate::base::fsio;
 use crate::cli::interrupt;
 use crate::present::study::folder::{Folder, same};
 use crate::present::study::plan::Planned;

@@ -1,6 +1,6 @@
 //! From tables to a log.
 
-use super::source::{Missing, Open, Reader, Rows, advice};
+use super::source::{Missing, Open, Rows, Sources, advice};
 use super::{Mapping, Part, streams};
 use crate::base::check::BadInput;
 use crate::flight::table::Tables;
@@ -10,20 +10,20 @@ impl Mapping {
     /// Reads the log that `tables`, of the file `name`, hold. Times are from the earliest of all streams on; rows without
     /// any value are left out. Fails where a source or a column is missing, naming the nearest.
     pub fn apply(&self, tables: &Tables, name: &str) -> Result<Log, BadInput> {
-        let reader = Reader { mapping: self, tables, name };
+        let sources = Sources { mapping: self, tables, name };
         let mut log = Log {
             name: name.into(),
-            setpoint: reader.stream("setpoint", &self.setpoint, streams::setpoint)?,
-            imu: reader.stream("imu", &self.imu, streams::imu)?,
-            odometry: reader.stream("odometry", &self.odometry, streams::odometry)?,
-            battery: reader.stream("battery", &self.battery, streams::battery)?,
-            rotors: reader.stream("rotors", &self.rotors, streams::rotors)?,
+            setpoint: sources.stream("setpoint", &self.setpoint, streams::setpoint)?,
+            imu: sources.stream("imu", &self.imu, streams::imu)?,
+            odometry: sources.stream("odometry", &self.odometry, streams::odometry)?,
+            battery: sources.stream("battery", &self.battery, streams::battery)?,
+            rotors: sources.stream("rotors", &self.rotors, streams::rotors)?,
             vehicle: self.record(&tables.vehicle),
             readable: tables.readable.clone(),
             ..Log::default()
         };
         if log.earliest().is_infinite() {
-            return Err(reader.nothing());
+            return Err(sources.nothing());
         }
         log.start();
         Ok(log)
@@ -64,7 +64,7 @@ impl Log {
     }
 }
 
-impl Reader<'_> {
+impl Sources<'_> {
     /// The stream of the first alternative of `part` that the file has all of.
     fn stream<P: Part, const N: usize>(
         &self,

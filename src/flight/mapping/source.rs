@@ -14,7 +14,7 @@ const STAMP: &str = "header.stamp";
 pub type Rows<const N: usize> = Result<Vec<[f64; N]>, Missing>;
 
 /// What a part is read from.
-pub struct Reader<'a> {
+pub struct Sources<'a> {
     pub mapping: &'a Mapping,
     pub tables: &'a Tables,
     pub name: &'a str,
@@ -22,7 +22,7 @@ pub struct Reader<'a> {
 
 /// A part of the mapping and its table.
 pub struct Open<'a> {
-    pub reader: &'a Reader<'a>,
+    pub sources: &'a Sources<'a>,
     /// Key of the part in the mapping.
     key: &'a str,
     source: &'a str,
@@ -42,12 +42,12 @@ impl From<BadInput> for Missing {
     }
 }
 
-impl<'a> Reader<'a> {
+impl<'a> Sources<'a> {
     pub fn open<'b, P: Part>(&'b self, key: &'b str, part: &'b P) -> Result<Open<'b>, Missing> {
         let origin = part.origin();
         let table = self.table(key, origin.source)?;
         let stamps = self.stamps(key, origin.source, table, origin.time)?;
-        Ok(Open { reader: self, key, source: origin.source, table, stamps })
+        Ok(Open { sources: self, key, source: origin.source, table, stamps })
     }
 
     fn table(&self, key: &str, source: &str) -> Result<&'a Table, Missing> {
@@ -116,9 +116,9 @@ impl Open<'_> {
         let Some(source) = quantity.source.as_deref().filter(|&source| source != self.source) else {
             return self.own(&key, self.source, self.table, quantity);
         };
-        let table = self.reader.table(&key, source)?;
+        let table = self.sources.table(&key, source)?;
         let rows = self.own(&key, source, table, quantity)?;
-        let stamps = self.reader.stamps(&key, source, table, None)?;
+        let stamps = self.sources.stamps(&key, source, table, None)?;
         let at = |found: join::Between| join::blend(rows[found.before], rows[found.after], found.share, sphere);
         let found = join::between(&stamps, &self.stamps);
         Ok(found.into_iter().map(|found| found.map_or([f64::NAN; N], at)).collect())
@@ -127,7 +127,7 @@ impl Open<'_> {
     fn own<U: Unit, const N: usize>(&self, key: &str, source: &str, table: &Table, quantity: &Vector<U>) -> Rows<N> {
         let mut rows = vec![[f64::NAN; N]; table.rows()];
         for (k, field) in quantity.fields.iter().enumerate().take(N) {
-            let column = self.reader.column(&format!("{key}.fields"), source, table, signed(field).1)?;
+            let column = self.sources.column(&format!("{key}.fields"), source, table, signed(field).1)?;
             for (row, &x) in rows.iter_mut().zip(column) {
                 row[k] = quantity.value(k, x);
             }
@@ -140,7 +140,7 @@ impl Open<'_> {
         let key = format!("{}.{name}", self.key);
         let mut columns = Vec::new();
         for field in quantity.fields() {
-            columns.push(self.reader.column(&key, self.source, self.table, signed(field).1)?);
+            columns.push(self.sources.column(&key, self.source, self.table, signed(field).1)?);
         }
         Ok((0..self.table.rows()).map(|i| quantity.value(columns.iter().map(|column| column[i]))).collect())
     }

@@ -4,7 +4,7 @@ use super::source::{Open, Rows};
 use super::{Battery, Imu, Odometry, Rotors, Setpoint, VelocityFrame, frames};
 
 pub fn setpoint(part: &Setpoint, open: &Open) -> Rows<4> {
-    let body = part.body.unwrap_or(open.reader.mapping.body);
+    let body = part.body.unwrap_or(open.sources.mapping.body);
     let rates = open.vector::<_, 3>("rate", &part.rate, false)?;
     let thrust = open.scalar("thrust", &part.thrust)?;
     let row = |(rate, thrust)| {
@@ -15,7 +15,7 @@ pub fn setpoint(part: &Setpoint, open: &Open) -> Rows<4> {
 }
 
 pub fn imu(part: &Imu, open: &Open) -> Rows<6> {
-    let body = part.body.unwrap_or(open.reader.mapping.body);
+    let body = part.body.unwrap_or(open.sources.mapping.body);
     let turned = |vector| frames::mounted(part.rotation_deg, body.to_flu(vector));
     let gyro = open.vector("gyro", &part.gyro, false)?;
     let force = open.vector("specific_force", &part.specific_force, false)?;
@@ -27,8 +27,8 @@ pub fn imu(part: &Imu, open: &Open) -> Rows<6> {
 }
 
 pub fn odometry(part: &Odometry, open: &Open) -> Rows<10> {
-    let body = part.body.unwrap_or(open.reader.mapping.body);
-    let world = part.world.unwrap_or(open.reader.mapping.world);
+    let body = part.body.unwrap_or(open.sources.mapping.body);
+    let world = part.world.unwrap_or(open.sources.mapping.world);
     let positions = open.vector("position", &part.position, false)?;
     let attitudes = open.vector("attitude", &part.attitude, true)?;
     let velocities = open.vector("velocity", &part.velocity, false)?;

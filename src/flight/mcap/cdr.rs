@@ -1,11 +1,10 @@
 //! CDR messages, decoded by the schema that the file holds.
 
-mod input;
-
 use super::bytes::Bytes;
+use super::cdr_input::Input;
 use super::column::Columns;
-use super::schema::{Fields, Number, Schema, Type};
-use input::Input;
+use super::schema::{CdrSchema, Fields, Type};
+use crate::flight::number::Number;
 
 /// Longer lists are images and point clouds, not measurements of a vehicle.
 pub const LIST: usize = 64;
@@ -40,7 +39,7 @@ enum Node {
 }
 
 impl Decoder {
-    pub fn new(schema: Schema) -> Self {
+    pub fn new(schema: CdrSchema) -> Self {
         Self { structs: schema.structs, root: schema.root, plan: None, nodes: 0 }
     }
 

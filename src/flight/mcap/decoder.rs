@@ -17,7 +17,7 @@ pub struct Schema {
 pub enum Decoder {
     Cdr(cdr::Decoder),
     Json,
-    Protobuf(protobuf::Schema),
+    Protobuf(protobuf::Descriptors),
 }
 
 impl Decoder {
@@ -35,7 +35,7 @@ impl Decoder {
         match (encoding, schema.encoding.as_str()) {
             ("cdr", "ros2msg") => Ok(Self::Cdr(cdr::Decoder::new(msg::schema(&schema.name, text()?)?))),
             ("cdr", "ros2idl") => Ok(Self::Cdr(cdr::Decoder::new(idl::schema(&schema.name, text()?)?))),
-            ("protobuf", "protobuf") => Ok(Self::Protobuf(protobuf::Schema::new(&schema.name, &schema.data)?)),
+            ("protobuf", "protobuf") => Ok(Self::Protobuf(protobuf::Descriptors::new(&schema.name, &schema.data)?)),
             _ => Err("this encoding is not known".into()),
         }
     }

@@ -1,21 +1,20 @@
 //! `ros2idl` schemas: the `.idl` files of a message and of the types it uses, in the part of OMG IDL that ROS 2 generates.
 
-mod token;
-
-use super::schema::{Definition, Fields, Number, Schema, Type};
+use super::idl_token::{Token, tokens};
+use super::schema::{CdrSchema, Definition, Fields, Type};
+use crate::flight::number::Number;
 use std::collections::HashMap;
-use token::{Token, tokens};
 
 /// Sequences of sequences that a field may be.
 const NESTING: usize = 8;
 
 /// The layout of the message called `name`, such as `sensor_msgs/msg/Imu`.
-pub fn schema(name: &str, text: &str) -> Result<Schema, String> {
+pub fn schema(name: &str, text: &str) -> Result<CdrSchema, String> {
     let mut parser = Parser { tokens: tokens(text)?, at: 0, scope: Vec::new(), definitions: HashMap::new() };
     while parser.peek().is_some() {
         parser.definition().ok_or_else(|| parser.complaint())?;
     }
-    Schema::link(parser.definitions, &name.replace('/', "::"))
+    CdrSchema::link(parser.definitions, &name.replace('/', "::"))
 }
 
 struct Parser<'a> {

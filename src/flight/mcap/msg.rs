@@ -3,11 +3,12 @@
 //! Own code, because the crate that reads them panics on some defaults and refuses messages for constants it cannot read,
 //! which a decoder does not need.
 
-use super::schema::{Definition, Fields, Number, Schema, Type};
+use super::schema::{CdrSchema, Definition, Fields, Type};
+use crate::flight::number::Number;
 use std::collections::HashMap;
 
 /// The layout of the message called `name`, such as `sensor_msgs/msg/Imu`.
-pub fn schema(name: &str, text: &str) -> Result<Schema, String> {
+pub fn schema(name: &str, text: &str) -> Result<CdrSchema, String> {
     let root = scoped(name);
     let mut definitions = HashMap::new();
     let mut current = (root.clone(), Fields::new());
@@ -21,7 +22,7 @@ pub fn schema(name: &str, text: &str) -> Result<Schema, String> {
         }
     }
     definitions.insert(current.0, Definition::Struct(current.1));
-    Schema::link(definitions, &root)
+    CdrSchema::link(definitions, &root)
 }
 
 /// `pkg/msg/Type` and `pkg/Type` are the same type.

@@ -8,8 +8,8 @@ mod wire;
 
 use super::cdr::LIST;
 use super::column::{Columns, seconds};
-pub use descriptor::Schema;
-use descriptor::{Field, Kind};
+pub use descriptor::Descriptors;
+use descriptor::{Field, FieldKind};
 use std::fmt::Write;
 use wire::{Wire, values};
 
@@ -17,18 +17,18 @@ use wire::{Wire, values};
 const DEPTH: usize = 32;
 
 /// Adds what `data` holds to the row being read. Fields without presence are 0 where the message leaves them out.
-pub fn decode(schema: &Schema, data: &[u8], columns: &mut Columns) -> Result<(), String> {
-    Reader { schema, columns, path: String::new(), depth: 0 }.message(schema.root, data)
+pub fn decode(schema: &Descriptors, data: &[u8], columns: &mut Columns) -> Result<(), String> {
+    MessageReader { schema, columns, path: String::new(), depth: 0 }.message(schema.root, data)
 }
 
-struct Reader<'a> {
-    schema: &'a Schema,
+struct MessageReader<'a> {
+    schema: &'a Descriptors,
     columns: &'a mut Columns,
     path: String,
     depth: usize,
 }
 
-impl Reader<'_> {
+impl MessageReader<'_> {
     fn message(&mut self, of: usize, data: &[u8]) -> Result<(), String> {
         let of = &self.schema.messages[of];
         let values = values(data).ok_or("a message is damaged")?;
@@ -62,7 +62,7 @@ impl Reader<'_> {
         let mut items = Vec::new();
         for &value in values {
             match (value, field.kind) {
-                (Wire::Bytes(packed), Kind::Number(number)) => {
+                (Wire::Bytes(packed), FieldKind::Number(number)) => {
                     items.extend(number.unpack(packed).ok_or("a message is damaged")?);
                 }
                 _ => items.push(value),
@@ -82,10 +82,12 @@ impl Reader<'_> {
 
     fn single(&mut self, field: &Field, value: Wire) -> Result<(), String> {
         match (field.kind, value) {
-            (Kind::Number(number), Wire::Number(bits)) => self.set(number.value(bits)),
-            (Kind::Message(of), Wire::Bytes(data)) => self.message(of, data),
-            (Kind::Other, _) => Ok(()),
-            (Kind::Number(_) | Kind::Message(_), _) => Err(format!("{} is not what its descriptors say", self.path)),
+            (FieldKind::Number(number), Wire::Number(bits)) => self.set(number.value(bits)),
+            (FieldKind::Message(of), Wire::Bytes(data)) => self.message(of, data),
+            (FieldKind::Other, _) => Ok(()),
+            (FieldKind::Number(_) | FieldKind::Message(_), _) => {
+                Err(format!("{} is not what its descriptors say", self.path))
+            }
         }
     }
 

@@ -4,7 +4,7 @@ use super::Topic;
 use super::column::{Budget, Columns};
 use super::decoder::{Decoder, Schema};
 use super::file::Stop;
-use super::record::{self, Message, Record};
+use super::record::{self, MessageRecord, Record};
 use super::vehicle;
 use crate::base::check::BadInput;
 use crate::flight::table::Tables;
@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, HashMap};
 /// Bytes that all that is read of a file may take: more than an hour of a canonical log.
 const MEMORY: usize = 2 << 30;
 
-pub struct Reader<'w> {
+pub struct TopicReader<'w> {
     wanted: &'w dyn Fn(&str) -> bool,
     budget: Budget,
     schemas: HashMap<u16, Schema>,
@@ -31,7 +31,7 @@ struct Channel {
     decoder: Option<Decoder>,
 }
 
-impl<'w> Reader<'w> {
+impl<'w> TopicReader<'w> {
     pub fn new(wanted: &'w dyn Fn(&str) -> bool) -> Self {
         Self {
             wanted,
@@ -56,8 +56,8 @@ impl<'w> Reader<'w> {
         }
     }
 
-    fn schema(&mut self, record: &record::Schema) -> Result<(), Stop> {
-        let record::Schema { id, name, encoding, data } = *record;
+    fn schema(&mut self, record: &record::SchemaRecord) -> Result<(), Stop> {
+        let record::SchemaRecord { id, name, encoding, data } = *record;
         if let Some(known) = self.schemas.get(&id) {
             let same = (known.name.as_str(), known.encoding.as_str(), known.data.as_slice()) == (name, encoding, data);
             return if same { Ok(()) } else { Err(format!("there are two schemas with number {id}").into()) };
@@ -67,8 +67,8 @@ impl<'w> Reader<'w> {
         Ok(())
     }
 
-    fn channel(&mut self, record: &record::Channel) -> Result<(), Stop> {
-        let record::Channel { id, schema, topic, encoding } = *record;
+    fn channel(&mut self, record: &record::ChannelRecord) -> Result<(), Stop> {
+        let record::ChannelRecord { id, schema, topic, encoding } = *record;
         if let Some(known) = self.channels.get(&id) {
             let same = (known.schema, known.topic.name.as_str(), known.encoding.as_str()) == (schema, topic, encoding);
             return if same { Ok(()) } else { Err(format!("there are two channels with number {id}").into()) };
@@ -89,7 +89,7 @@ impl<'w> Reader<'w> {
         Ok(())
     }
 
-    fn message(&mut self, message: &Message) -> Result<(), Stop> {
+    fn message(&mut self, message: &MessageRecord) -> Result<(), Stop> {
         let Some(channel) = self.channels.get_mut(&message.channel) else {
             return Err(format!("channel {} is missing", message.channel).into());
         };
@@ -103,21 +103,17 @@ impl<'w> Reader<'w> {
         Ok(())
     }
 
-    pub fn tables(self, readable: Readable) -> Tables {
+    /// The tables of wanted topics, and all topics by name.
+    pub fn finish(self, readable: Readable) -> (Tables, Vec<Topic>) {
         let tables = self.columns.into_iter().map(|(topic, columns)| (topic, columns.into_table())).collect();
-        Tables { tables, vehicle: self.vehicle, readable }
-    }
-
-    /// By name.
-    pub fn topics(self) -> Vec<Topic> {
         let mut topics: Vec<_> = self.channels.into_values().map(|channel| channel.topic).collect();
         topics.sort_by(|a, b| a.name.cmp(&b.name));
-        topics
+        (Tables { tables, vehicle: self.vehicle, readable }, topics)
     }
 }
 
 impl Channel {
-    fn read(&mut self, schema: Option<&Schema>, message: &Message, columns: &mut Columns) -> Result<(), String> {
+    fn read(&mut self, schema: Option<&Schema>, message: &MessageRecord, columns: &mut Columns) -> Result<(), String> {
         let decoder = match &mut self.decoder {
             Some(decoder) => decoder,
             none => none.insert(Decoder::new(&self.encoding, schema, columns)?),

@@ -7,9 +7,9 @@ use ::mcap::records::op;
 
 /// One record, borrowed from the file or from a decompressed chunk.
 pub enum Record<'a> {
-    Schema(Schema<'a>),
-    Channel(Channel<'a>),
-    Message(Message<'a>),
+    Schema(SchemaRecord<'a>),
+    Channel(ChannelRecord<'a>),
+    Message(MessageRecord<'a>),
     /// The values: keys and values, each after its length.
     Metadata {
         name: &'a str,
@@ -19,21 +19,21 @@ pub enum Record<'a> {
     Other,
 }
 
-pub struct Schema<'a> {
+pub struct SchemaRecord<'a> {
     pub id: u16,
     pub name: &'a str,
     pub encoding: &'a str,
     pub data: &'a [u8],
 }
 
-pub struct Channel<'a> {
+pub struct ChannelRecord<'a> {
     pub id: u16,
     pub schema: u16,
     pub topic: &'a str,
     pub encoding: &'a str,
 }
 
-pub struct Message<'a> {
+pub struct MessageRecord<'a> {
     pub channel: u16,
     pub log_time_ns: u64,
     pub data: &'a [u8],
@@ -44,13 +44,15 @@ impl<'a> Record<'a> {
     pub fn parse(opcode: u8, body: &'a [u8]) -> Option<Self> {
         let b = &mut Bytes(body);
         Some(match opcode {
-            op::SCHEMA => Self::Schema(Schema { id: b.u16()?, name: b.text()?, encoding: b.text()?, data: b.block()? }),
+            op::SCHEMA => {
+                Self::Schema(SchemaRecord { id: b.u16()?, name: b.text()?, encoding: b.text()?, data: b.block()? })
+            }
             op::CHANNEL => {
-                Self::Channel(Channel { id: b.u16()?, schema: b.u16()?, topic: b.text()?, encoding: b.text()? })
+                Self::Channel(ChannelRecord { id: b.u16()?, schema: b.u16()?, topic: b.text()?, encoding: b.text()? })
             }
             op::MESSAGE => {
                 let (channel, _sequence, log_time_ns, _publish_time) = (b.u16()?, b.u32()?, b.u64()?, b.u64()?);
-                Self::Message(Message { channel, log_time_ns, data: b.0 })
+                Self::Message(MessageRecord { channel, log_time_ns, data: b.0 })
             }
             op::METADATA => Self::Metadata { name: b.text()?, values: b.block()? },
             _ => Self::Other,

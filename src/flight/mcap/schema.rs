@@ -1,36 +1,10 @@
 //! How a CDR message is laid out, whichever language its schema is written in.
 
+use crate::flight::number::Number;
 use std::collections::HashMap;
 
 /// Structs within structs that a message may have.
 const DEPTH: usize = 32;
-
-/// A number as CDR stores it, aligned to its size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Number {
-    Bool,
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
-}
-
-impl Number {
-    pub fn size(self) -> usize {
-        match self {
-            Self::Bool | Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
-    }
-}
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Type {
@@ -38,7 +12,7 @@ pub enum Type {
     /// Seconds and nanoseconds.
     Time,
     Text,
-    /// A position in [`Schema::structs`].
+    /// A position in [`CdrSchema::structs`].
     Struct(usize),
     /// So many of them, or a sequence that says itself how many.
     List {
@@ -59,12 +33,12 @@ pub enum Definition {
 
 /// The types of a message, with every name resolved, without cycles and not too deep.
 #[derive(Debug)]
-pub struct Schema {
+pub struct CdrSchema {
     pub structs: Vec<Fields>,
     pub root: Type,
 }
 
-impl Schema {
+impl CdrSchema {
     /// Follows the names from `root` on.
     pub fn link(mut definitions: HashMap<String, Definition>, root: &str) -> Result<Self, String> {
         for name in ["Time", "Duration", "msg::Time", "msg::Duration"] {
@@ -163,7 +137,7 @@ mod tests {
     #[test]
     fn cycles_and_towers_are_refused() {
         let cycle = HashMap::from([("a".into(), Definition::Struct(vec![("a".into(), named("a"))]))]);
-        assert!(Schema::link(cycle, "a").is_err());
+        assert!(CdrSchema::link(cycle, "a").is_err());
         // Each is shallow on its own, seen from the one before.
         let mut tower = HashMap::from([("t0".into(), Definition::Alias(Type::Text))]);
         for i in 1..100 {
@@ -171,7 +145,7 @@ mod tests {
         }
         let fields = (0..100).map(|i| (format!("f{i}"), named(&format!("t{i}")))).collect();
         tower.insert("all".into(), Definition::Struct(fields));
-        assert!(Schema::link(tower, "all").is_err());
+        assert!(CdrSchema::link(tower, "all").is_err());
     }
 
     #[test]
@@ -181,7 +155,7 @@ mod tests {
             ("p::Leaf".into(), Definition::Alias(Type::Number(Number::F32))),
             ("q::Leaf".into(), Definition::Alias(Type::Number(Number::F64))),
         ]);
-        let schema = Schema::link(definitions, "p::Root").unwrap();
+        let schema = CdrSchema::link(definitions, "p::Root").unwrap();
         assert_eq!(schema.structs[0][0].1, Type::Number(Number::F32));
         assert_eq!(schema.structs[0][1].1, Type::Number(Number::F64));
     }

@@ -2,12 +2,14 @@
 
 use super::Limits;
 use super::cascade::Demand;
-use super::kind::Kind;
+use super::manoeuvre::Manoeuvre;
 use super::script::{Course, Flip, LowHover, Now, PunchTurns, RateSteps, Script, Segment, Sequenced, ThrottleSteps};
 use super::view::{View, wrapped};
 use crate::base::rng::Sequence;
 use nalgebra::{Vector2, Vector3};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use rand::RngExt;
+use rand_distr::{Distribution, UnitCircle};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A manoeuvre and where it begins.
 #[derive(Debug)]
@@ -30,19 +32,19 @@ const FASTEST: f64 = 20.0;
 
 impl Plan {
     /// The manoeuvre of this kind after `flown` others of it. The first is flown at full size, and directions alternate.
-    pub fn new(kind: Kind, flown: usize, view: &View, limits: &Limits, rng: &mut Sequence) -> Self {
+    pub fn new(kind: Manoeuvre, flown: usize, view: &View, limits: &Limits, rng: &mut Sequence) -> Self {
         let sign = if flown.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let size = Size { sign, share: if flown == 0 { 1.0 } else { rng.unit() } };
+        let size = Size { sign, share: if flown == 0 { 1.0 } else { rng.random() } };
         match kind {
-            Kind::RollSteps | Kind::PitchSteps | Kind::YawSteps | Kind::RateSteps => {
+            Manoeuvre::RollSteps | Manoeuvre::PitchSteps | Manoeuvre::YawSteps | Manoeuvre::RateSteps => {
                 turning(kind, size, view, limits, rng)
             }
-            Kind::RollDoublets | Kind::PitchDoublets | Kind::YawDoublets => turning(kind, size, view, limits, rng),
-            Kind::RollFlip | Kind::PitchFlip | Kind::YawSpin => turning(kind, size, view, limits, rng),
-            Kind::ThrottleSteps | Kind::Punch | Kind::PunchTurns | Kind::LowHover => pushing(kind, size, view, rng),
-            Kind::Chop | Kind::RampUp | Kind::RampDown => pushing(kind, size, view, rng),
-            Kind::Forward | Kind::Backward | Kind::Left | Kind::Right => travelling(kind, size, view, rng),
-            Kind::Climb | Kind::Descent | Kind::Dive | Kind::Circle => travelling(kind, size, view, rng),
+            Manoeuvre::RollDoublets | Manoeuvre::PitchDoublets | Manoeuvre::YawDoublets => turning(kind, size, view, limits, rng),
+            Manoeuvre::RollFlip | Manoeuvre::PitchFlip | Manoeuvre::YawSpin => turning(kind, size, view, limits, rng),
+            Manoeuvre::ThrottleSteps | Manoeuvre::Punch | Manoeuvre::PunchTurns | Manoeuvre::LowHover => pushing(kind, size, view, rng),
+            Manoeuvre::Chop | Manoeuvre::RampUp | Manoeuvre::RampDown => pushing(kind, size, view, rng),
+            Manoeuvre::Forward | Manoeuvre::Backward | Manoeuvre::Left | Manoeuvre::Right => travelling(kind, size, view, rng),
+            Manoeuvre::Climb | Manoeuvre::Descent | Manoeuvre::Dive | Manoeuvre::Circle => travelling(kind, size, view, rng),
         }
     }
 
@@ -85,20 +87,20 @@ impl Size {
 }
 
 /// Steps, doublets, flips and spins of body rates, over the spot.
-fn turning(kind: Kind, size: Size, view: &View, limits: &Limits, rng: &mut Sequence) -> Plan {
+fn turning(kind: Manoeuvre, size: Size, view: &View, limits: &Limits, rng: &mut Sequence) -> Plan {
     match kind {
-        Kind::RollSteps | Kind::PitchSteps | Kind::YawSteps | Kind::RateSteps => {
+        Manoeuvre::RollSteps | Manoeuvre::PitchSteps | Manoeuvre::YawSteps | Manoeuvre::RateSteps => {
             let axis = kind as usize;
             let axes: [bool; 3] = std::array::from_fn(|i| axis == i || axis == 3);
             over_spot(view, rng.uniform([25.0, 60.0]), Box::new(RateSteps::new(axes)))
         }
-        Kind::RollDoublets | Kind::PitchDoublets | Kind::YawDoublets => {
-            let axis = kind as usize - Kind::RollDoublets as usize;
+        Manoeuvre::RollDoublets | Manoeuvre::PitchDoublets | Manoeuvre::YawDoublets => {
+            let axis = kind as usize - Manoeuvre::RollDoublets as usize;
             let script = Sequenced::doublets(axis, size.sign, limits, rng);
             over_spot(view, rng.uniform([25.0, 60.0]), Box::new(script))
         }
-        Kind::RollFlip | Kind::PitchFlip => {
-            let axis = kind as usize - Kind::RollFlip as usize;
+        Manoeuvre::RollFlip | Manoeuvre::PitchFlip => {
+            let axis = kind as usize - Manoeuvre::RollFlip as usize;
             let script = Flip::new(axis, size.signed(0.85), rng.uniform([-1.0, limits.hover_command]));
             over_spot(view, rng.uniform([38.0, 60.0]), Box::new(script))
         }
@@ -112,54 +114,54 @@ fn turning(kind: Kind, size: Size, view: &View, limits: &Limits, rng: &mut Seque
 }
 
 /// What throttle does, over the spot.
-fn pushing(kind: Kind, size: Size, view: &View, rng: &mut Sequence) -> Plan {
+fn pushing(kind: Manoeuvre, size: Size, view: &View, rng: &mut Sequence) -> Plan {
     match kind {
-        Kind::ThrottleSteps => over_spot(view, rng.uniform([35.0, 50.0]), Box::new(ThrottleSteps::new())),
-        Kind::Punch => {
+        Manoeuvre::ThrottleSteps => over_spot(view, rng.uniform([35.0, 50.0]), Box::new(ThrottleSteps::new())),
+        Manoeuvre::Punch => {
             let seconds = rng.uniform([0.3, 1.0]);
             over_spot(view, rng.uniform([16.0, 26.0]), throttle(&[(seconds, 1.0, 1.0), (0.3, -1.0, -1.0)]))
         }
-        Kind::PunchTurns => {
+        Manoeuvre::PunchTurns => {
             let script = PunchTurns::new(size.signed(0.6), rng.uniform([0.15, 0.3]));
             over_spot(view, rng.uniform([16.0, 24.0]), Box::new(script))
         }
-        Kind::LowHover => {
+        Manoeuvre::LowHover => {
             let script = LowHover::new(rng.uniform([0.2, 0.35]));
             Plan { low: true, ..over_spot(view, LOW_M, Box::new(script)) }
         }
-        Kind::Chop => {
+        Manoeuvre::Chop => {
             let seconds = rng.uniform([0.5, 1.6]);
             over_spot(view, rng.uniform([58.0, 68.0]), throttle(&[(seconds, -1.0, -1.0), (0.2, 1.0, 1.0)]))
         }
-        Kind::RampUp => over_spot(view, rng.uniform([38.0, 48.0]), throttle(&[(rng.uniform([0.8, 2.0]), -1.0, 1.0)])),
+        Manoeuvre::RampUp => over_spot(view, rng.uniform([38.0, 48.0]), throttle(&[(rng.uniform([0.8, 2.0]), -1.0, 1.0)])),
         // A ramp down.
         _ => over_spot(view, rng.uniform([18.0, 28.0]), throttle(&[(rng.uniform([0.8, 2.0]), 1.0, -1.0)])),
     }
 }
 
 /// Passes, climbs, descents and circles.
-fn travelling(kind: Kind, size: Size, view: &View, rng: &mut Sequence) -> Plan {
+fn travelling(kind: Manoeuvre, size: Size, view: &View, rng: &mut Sequence) -> Plan {
     match kind {
-        Kind::Forward | Kind::Backward | Kind::Left | Kind::Right => {
+        Manoeuvre::Forward | Manoeuvre::Backward | Manoeuvre::Left | Manoeuvre::Right => {
             let nose = match kind {
-                Kind::Forward => 0.0,
-                Kind::Backward => PI,
-                Kind::Left => FRAC_PI_2,
+                Manoeuvre::Forward => 0.0,
+                Manoeuvre::Backward => PI,
+                Manoeuvre::Left => FRAC_PI_2,
                 _ => -FRAC_PI_2,
             };
             let speed = FASTEST * size.least(0.7);
             let height = rng.uniform([22.0, 58.0]);
             across(view, height, nose, rng, Course::new(speed, 0.0, 0.0, 3.2))
         }
-        Kind::Climb | Kind::Descent => {
+        Manoeuvre::Climb | Manoeuvre::Descent => {
             let (height, vertical) = match kind {
-                Kind::Climb => (14.0, 18.0 * size.least(0.5)),
+                Manoeuvre::Climb => (14.0, 18.0 * size.least(0.5)),
                 _ => (70.0, -14.0 * size.least(0.3)),
             };
             let aside = rng.uniform([0.0, 6.0]);
             across(view, height, 0.0, rng, Course::new(aside, vertical, 0.0, 3.8))
         }
-        Kind::Dive => {
+        Manoeuvre::Dive => {
             let (speed, vertical) = (FASTEST * size.least(0.5), -rng.uniform([5.0, 12.0]));
             across(view, 66.0, 0.0, rng, Course::new(speed, vertical, 0.0, 3.2))
         }
@@ -185,14 +187,10 @@ fn throttle(segments: &[(f64, f64, f64)]) -> Box<dyn Script> {
 /// Away over the origin, with the direction of travel `nose` radians to the left of the nose.
 fn across(view: &View, height: f64, nose: f64, rng: &mut Sequence, course: Course) -> Plan {
     let here = view.position.xy();
-    let away = if here.norm() > 5.0 { here.normalize() } else { on_circle(TAU * rng.unit()) };
+    let away = if here.norm() > 5.0 { here.normalize() } else { Vector2::from(UnitCircle.sample(rng)) };
     let spot = away * here.norm().clamp(20.0, 60.0);
     let travel = (-away.y).atan2(-away.x);
     let heading = travel - nose;
     let script = Box::new(course.along(travel, heading));
     Plan { station: Vector3::new(spot.x, spot.y, height), heading: Some(heading), low: false, script }
-}
-
-fn on_circle(angle: f64) -> Vector2<f64> {
-    Vector2::new(angle.cos(), angle.sin())
 }

@@ -10,6 +10,7 @@ use super::{Environment, Tally, gae};
 use crate::base::lane::Level;
 use crate::base::rng::{Philox, Stream};
 use crate::learn::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
+use rand::seq::SliceRandom;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -176,7 +177,7 @@ impl<'a, E: Environment> Training<'a, E> {
         let losses = awake(|| {
             let mut losses = Losses::default();
             for mut shuffle in shuffles {
-                shuffle.shuffle(order);
+                order.shuffle(&mut shuffle);
                 for rows in order.chunks_exact(order.len() / c.minibatches) {
                     losses = updater.step(level, network, &batch, rows, &hyper);
                 }

@@ -4,6 +4,8 @@ use crate::base::check::{Check, Invalid};
 use crate::base::rng::Sequence;
 use crate::model::effects::{self, COUNT, MODEL};
 use nalgebra::DMatrix;
+use rand::RngExt;
+use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -63,7 +65,7 @@ impl Extension {
         }
         let covariance = DMatrix::from_fn(n, n, |i, j| self.covariance[i][j]);
         let Some(cholesky) = covariance.cholesky() else { return out };
-        let normals: Vec<f64> = (0..n).map(|_| rng.normal()).collect();
+        let normals: Vec<f64> = rng.sample_iter(StandardNormal).take(n).collect();
         for (row, key) in self.uncertain.iter().enumerate() {
             let moved: f64 = (0..=row).map(|column| cholesky.l_dirty()[(row, column)] * normals[column]).sum();
             if let Some(i) = key.split_once('.').and_then(|(effect, name)| index(effect, name)) {

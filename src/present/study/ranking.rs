@@ -3,6 +3,7 @@
 use super::summary::CONFIDENCE;
 use crate::base::rng::{Philox, Sequence, Stream};
 use crate::base::stats;
+use rand::RngExt;
 use serde::Serialize;
 use std::cmp::Ordering;
 
@@ -93,8 +94,7 @@ fn drawn(rng: &mut Sequence, scores: &[RunScore]) -> RunScore {
     if n < 2 {
         return middle;
     }
-    let index = |word: u32| ((u64::from(word) * n as u64) >> 32) as usize;
-    let drawn = mean(&(0..n).map(|_| scores[index(rng.word())]).collect::<Vec<_>>());
+    let drawn = mean(&(0..n).map(|_| scores[rng.random_range(0..n)]).collect::<Vec<_>>());
     let wider = (n as f64 / (n - 1) as f64).sqrt();
     [0, 1, 2].map(|k| middle[k] + wider * (drawn[k] - middle[k]))
 }

@@ -1,5 +1,6 @@
 //! A configuration in layers: built-in values, then the file's, then the command line's.
 
+use super::later;
 use super::{Config, DEFAULT, LIBRARY, Setting};
 use crate::base::check::{BadInput, Check, Invalid};
 use crate::base::document::{Document, decode, nearest};
@@ -26,7 +27,7 @@ impl<'a> Layers<'a> {
         let mut table = self.base.table().clone();
         check_keys(self.file.table(), "", &known).map_err(|invalid| self.file.blame(invalid))?;
         forget_exclusive(&mut table, |key| self.file.sets(key));
-        lay(&mut table, self.file.table());
+        lay(&mut table, &self.whole_file());
         for setting in self.settings {
             check_key(&setting.key, &known).map_err(|invalid| BadInput::at(&setting.option, invalid))?;
             forget_exclusive(&mut table, |key| key == setting.key);
@@ -35,6 +36,19 @@ impl<'a> Layers<'a> {
         let config: Config = decode(table).map_err(|invalid| self.blame(invalid))?;
         config.check().map_err(|invalid| self.blame(invalid))?;
         Ok(config)
+    }
+
+    /// The file's table. One that sets every key is that of a run, and keys that came after it have their old meaning; in any
+    /// other, what is not set is as built in.
+    fn whole_file(&self) -> Table {
+        let mut table = self.file.table().clone();
+        let mut keys = Vec::new();
+        collect_keys(self.base.table(), "", &mut keys);
+        let set = |key: &str| later::is_later(key) || EXCLUSIVE.contains(&key) || self.file.sets(key);
+        if keys.iter().all(|key| set(key)) {
+            later::complete(&mut table, None);
+        }
+        table
     }
 
     /// Names the layer that the value came from.

@@ -8,6 +8,7 @@ use super::{Block, Race, lanes};
 use crate::base::lane::{LANES, Lane, Lane32, Portable, Real};
 use crate::base::rng::Stream;
 use crate::learn::ppo::{Environment, Step};
+use rand::RngExt;
 
 impl Environment for Race {
     type Block<L: Lane32> = Block<L>;
@@ -24,7 +25,7 @@ impl Environment for Race {
             self.restart(&mut block, lane);
             // The first episodes are of different ages, so that the horizon does not end them all at once.
             let mut rng = self.rng.sequence(Stream::Reset, first + lane as u32, u32::MAX);
-            block.clock.set(lane, (rng.unit() * f64::from(self.config.horizon_steps)).floor() as f32);
+            block.clock.set(lane, rng.random_range(0..self.config.horizon_steps) as f32);
         }
         block
     }

@@ -52,7 +52,13 @@ pub const LAYOUT: [Group; 11] = [
 ];
 
 /// Index of the group whose offset and scale depend on the vehicle.
-const VOLTAGE: usize = 8;
+const VOLTAGE: usize = {
+    let mut i = 0;
+    while !matches!(LAYOUT[i].name.as_bytes(), b"voltage") {
+        i += 1;
+    }
+    i
+};
 
 /// [`LAYOUT`] for a policy trained with `battery`: its voltage goes from -1, empty, to 1, full.
 pub fn layout(battery: &Battery) -> [Group; LAYOUT.len()] {

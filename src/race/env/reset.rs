@@ -5,6 +5,8 @@ use crate::base::check::{Check, Invalid};
 use crate::base::rng::Sequence;
 use crate::model::dynamics::{Craft, Factors, State};
 use nalgebra::{UnitQuaternion, Vector3};
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal, UnitCircle};
 use serde::{Deserialize, Serialize};
 
 /// Spread of the starting states (paper section 4.5).
@@ -71,7 +73,7 @@ pub fn draw(race: &Race, rng: &mut Sequence, place: StartPlace, factors: Option<
     let pad = match place {
         StartPlace::Pad => true,
         StartPlace::Spline => false,
-        StartPlace::Mixed => rng.unit() < config.reset.pad_share,
+        StartPlace::Mixed => rng.random_bool(config.reset.pad_share),
     };
     let (state, target) = if pad {
         let yaw = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), race.start.heading_rad());
@@ -88,15 +90,15 @@ pub fn draw(race: &Race, rng: &mut Sequence, place: StartPlace, factors: Option<
 
 fn on_spline(race: &Race, rng: &mut Sequence, voltage: f64) -> (State<f64>, usize) {
     let config = &race.config.reset;
-    let point = &race.lap[(rng.unit() * race.lap.len() as f64) as usize];
-    let mut scatter = |sd: f64| Vector3::new(rng.normal(), rng.normal(), rng.normal()) * sd;
+    let point = &race.lap[rng.random_range(0..race.lap.len())];
+    let mut scatter = |sd: f64| Vector3::from_fn(|_, _| rng.sample::<f64, _>(StandardNormal)) * sd;
     let offset = scatter(config.position_m);
     let turned = UnitQuaternion::from_scaled_axis(scatter(config.direction_deg.to_radians())) * point.tangent;
     let speed = rng.uniform(config.speed_m_s);
     let yaw = point.tangent.y.atan2(point.tangent.x) + rng.uniform([-1.0, 1.0]) * config.yaw_deg.to_radians();
-    let tilt_axis = std::f64::consts::TAU * rng.unit();
-    let tilt = config.tilt_deg.to_radians() * rng.unit();
-    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(tilt_axis.cos(), tilt_axis.sin(), 0.0) * tilt)
+    let [x, y] = UnitCircle.sample(rng);
+    let tilt = rng.uniform([0.0, config.tilt_deg.to_radians()]);
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(x, y, 0.0) * tilt)
         * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
 
     let gate = &race.gates[point.target];

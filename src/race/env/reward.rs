@@ -54,11 +54,31 @@ impl Check for RewardConfig {
     }
 }
 
-/// The reward's terms, in the order in which they are logged.
-pub const TERMS: [&str; 7] = ["progress", "gate", "time", "altitude", "timeout", "facing", "action_change"];
+/// The one list of the reward's terms.
+macro_rules! list {
+    ($($name:ident),*) => {
+        /// The reward's terms, signed and weighted; their sum is the reward.
+        pub struct Terms<L> {
+            $(pub $name: L),*
+        }
+
+        /// Names of the terms, in the order in which they are logged.
+        pub const TERMS: [&str; [$(stringify!($name)),*].len()] = [$(stringify!($name)),*];
+
+        impl<L> Terms<L> {
+            /// In the order of [`TERMS`].
+            #[inline(always)]
+            pub fn in_order(self) -> [L; TERMS.len()] {
+                [$(self.$name),*]
+            }
+        }
+    };
+}
+
+list!(progress, gate, time, altitude, timeout, facing, action_change);
 
 /// What one step brought, seen by the reward.
-pub struct Step<L: Lane> {
+pub struct Inputs<L: Lane> {
     /// Distance to the target gate's centre before and after the step, m.
     pub distance: [L; 2],
     /// Lanes that passed their gate, and lanes that ran into the time-out.
@@ -72,19 +92,19 @@ pub struct Step<L: Lane> {
     pub action_change: L,
 }
 
-/// The terms of [`TERMS`], signed and weighted; their sum is the reward.
+/// The terms of one step.
 #[inline(always)]
-pub fn terms<L: Lane>(c: &RewardConfig, s: &Step<L>) -> [L; TERMS.len()] {
+pub fn terms<L: Lane>(c: &RewardConfig, s: &Inputs<L>) -> Terms<L> {
     let zero = L::zero();
     let low = (L::of(c.altitude_m) - s.height).max(zero);
     let near = (s.distance[1] * L::of(-1.0 / c.facing_m)).exp();
-    [
-        (s.distance[0] - s.distance[1]) * L::of(c.progress),
-        L::select(s.passed, L::of(c.gate), zero),
-        L::of(-c.time),
-        low * L::of(-c.altitude),
-        L::select(s.timed_out, L::of(-c.timeout), zero),
-        (L::one() - s.facing) * near * L::of(-c.facing),
-        s.action_change * L::of(-c.action_change),
-    ]
+    Terms {
+        progress: (s.distance[0] - s.distance[1]) * L::of(c.progress),
+        gate: L::select(s.passed, L::of(c.gate), zero),
+        time: L::of(-c.time),
+        altitude: low * L::of(-c.altitude),
+        timeout: L::select(s.timed_out, L::of(-c.timeout), zero),
+        facing: (L::one() - s.facing) * near * L::of(-c.facing),
+        action_change: s.action_change * L::of(-c.action_change),
+    }
 }

@@ -4,6 +4,8 @@ use super::mass::Mass;
 use crate::base::rng::Sequence;
 use crate::model::track::Track;
 use nalgebra::{Matrix3, Vector3};
+use rand::RngExt;
+use rand_distr::StandardNormal;
 
 /// A cyclic course of apertures in a volume.
 #[derive(Clone, Debug)]
@@ -56,7 +58,7 @@ impl Course {
         let tangents: Vec<_> = (0..count)
             .map(|g| {
                 let size = 0.5 * (chord(g) + chord((g + count - 1) % count)).max(0.5);
-                let mut bend = || disorder * rng.normal();
+                let mut bend = || disorder * rng.sample::<f64, _>(StandardNormal);
                 let normal = self.gates[g].axes * Vector3::new(1.0, bend(), bend());
                 normal * size * (bend() + 0.3 * disorder).exp()
             })

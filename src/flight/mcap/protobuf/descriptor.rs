@@ -1,13 +1,13 @@
 //! Message types from a serialized `FileDescriptorSet`.
 
-use super::wire::Number;
+use super::wire::WireNumber;
 use prost::Message as _;
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorSet};
 use std::collections::{BTreeMap, HashMap};
 
 #[derive(Debug)]
-pub struct Schema {
+pub struct Descriptors {
     pub messages: Vec<Message>,
     /// Position of the type that the file's messages have.
     pub root: usize,
@@ -26,19 +26,19 @@ pub struct Field {
     pub repeated: bool,
     /// Whether a field that is not transmitted is missing, and not zero.
     pub presence: bool,
-    pub kind: Kind,
+    pub kind: FieldKind,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub enum Kind {
-    Number(Number),
+pub enum FieldKind {
+    Number(WireNumber),
     /// Position of its type.
     Message(usize),
     /// Text and the like.
     Other,
 }
 
-impl Schema {
+impl Descriptors {
     /// The type called `name`.
     pub fn new(name: &str, descriptors: &[u8]) -> Result<Self, String> {
         let set =
@@ -86,19 +86,19 @@ fn field(
     found: &[(String, &DescriptorProto, bool)],
     by_name: &HashMap<&str, usize>,
 ) -> Result<Field, String> {
-    let kind = Kind::Number(match of.r#type() {
-        Type::Bool => Number::Bool,
-        Type::Int32 | Type::Int64 | Type::Enum => Number::Signed,
-        Type::Uint32 | Type::Uint64 => Number::Unsigned,
-        Type::Sint32 | Type::Sint64 => Number::Zigzag,
-        Type::Fixed32 => Number::Fixed32,
-        Type::Fixed64 => Number::Fixed64,
-        Type::Sfixed32 => Number::Sfixed32,
-        Type::Sfixed64 => Number::Sfixed64,
-        Type::Float => Number::Float,
-        Type::Double => Number::Double,
+    let kind = FieldKind::Number(match of.r#type() {
+        Type::Bool => WireNumber::Bool,
+        Type::Int32 | Type::Int64 | Type::Enum => WireNumber::Signed,
+        Type::Uint32 | Type::Uint64 => WireNumber::Unsigned,
+        Type::Sint32 | Type::Sint64 => WireNumber::Zigzag,
+        Type::Fixed32 => WireNumber::Fixed32,
+        Type::Fixed64 => WireNumber::Fixed64,
+        Type::Sfixed32 => WireNumber::Sfixed32,
+        Type::Sfixed64 => WireNumber::Sfixed64,
+        Type::Float => WireNumber::Float,
+        Type::Double => WireNumber::Double,
         Type::Message => return message_field(of, found, by_name),
-        Type::String | Type::Bytes | Type::Group => return Ok(new(of, true, Kind::Other)),
+        Type::String | Type::Bytes | Type::Group => return Ok(new(of, true, FieldKind::Other)),
     });
     Ok(new(of, !implicit || of.proto3_optional() || of.oneof_index.is_some(), kind))
 }
@@ -112,9 +112,9 @@ fn message_field(
     let name = of.type_name().trim_start_matches('.');
     let at = *by_name.get(name).ok_or_else(|| format!("its descriptors do not hold {name}"))?;
     let map = found[at].1.options.as_ref().is_some_and(|options| options.map_entry());
-    Ok(new(of, true, if map { Kind::Other } else { Kind::Message(at) }))
+    Ok(new(of, true, if map { FieldKind::Other } else { FieldKind::Message(at) }))
 }
 
-fn new(of: &FieldDescriptorProto, presence: bool, kind: Kind) -> Field {
+fn new(of: &FieldDescriptorProto, presence: bool, kind: FieldKind) -> Field {
     Field { name: of.name().into(), repeated: of.label() == Label::Repeated, presence, kind }
 }

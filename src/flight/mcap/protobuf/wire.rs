@@ -24,7 +24,7 @@ impl Wire<'_> {
 
 /// How the bits of a number are meant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Number {
+pub enum WireNumber {
     Bool,
     Signed,
     Unsigned,
@@ -38,7 +38,7 @@ pub enum Number {
     Double,
 }
 
-impl Number {
+impl WireNumber {
     pub fn value(self, bits: u64) -> f64 {
         match self {
             Self::Bool => f64::from(bits != 0),
@@ -117,9 +117,9 @@ mod tests {
 
     #[test]
     fn numbers_are_what_their_type_says() {
-        assert_eq!(Number::Zigzag.value(3), -2.0);
-        assert_eq!(Number::Signed.value(u64::MAX), -1.0);
-        assert_eq!(Number::Sfixed32.value(0xffff_fffe), -2.0);
+        assert_eq!(WireNumber::Zigzag.value(3), -2.0);
+        assert_eq!(WireNumber::Signed.value(u64::MAX), -1.0);
+        assert_eq!(WireNumber::Sfixed32.value(0xffff_fffe), -2.0);
         assert_eq!(varint(&mut Bytes(&[0xac, 0x02])), Some(300));
         assert_eq!(varint(&mut Bytes(&[0xff; 10])), None);
     }

@@ -5,6 +5,7 @@ use crate::base::rng::Sequence;
 use crate::flight::pilot::cascade::Demand;
 use crate::model::constants::CONTROL_S;
 use nalgebra::Vector3;
+use rand::RngExt;
 use std::f64::consts::TAU;
 
 /// Random rates, each held for some commands, so that the response shows at all frequencies.
@@ -30,7 +31,7 @@ impl RateSteps {
     }
 
     fn draw(&mut self, axis: usize, now: &Now, rng: &mut Sequence) {
-        let ticks = HOLDS[(rng.unit() * HOLDS.len() as f64) as usize];
+        let ticks = HOLDS[rng.random_range(0..HOLDS.len())];
         let seconds = ticks * CONTROL_S;
         let vertical = now.view.vertical();
         let angle = match axis {
@@ -38,7 +39,7 @@ impl RateSteps {
             1 => (-vertical.x).atan2(vertical.z),
             _ => 0.0,
         };
-        let mut value = rng.uniform([0.25, 1.25]).min(1.0) * if rng.unit() < 0.5 { 1.0 } else { -1.0 };
+        let mut value = rng.uniform([0.25, 1.25]).min(1.0) * if rng.random() { 1.0 } else { -1.0 };
         let turn = value * now.limits.max_rate_rad_s[axis] * seconds;
         if axis < 2 && (angle + turn).abs() > TILTED && turn * angle > 0.0 {
             value = -value;

@@ -5,6 +5,7 @@ use crate::base::rng::Sequence;
 use crate::flight::pilot::Limits;
 use crate::flight::pilot::cascade::Demand;
 use nalgebra::Vector3;
+use rand::seq::SliceRandom;
 
 /// A stretch of a timetable.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +36,7 @@ impl Sequenced {
     /// Rate doublets of three sizes in random order, beginning to the side of `sign`.
     pub fn doublets(axis: usize, sign: f64, limits: &Limits, rng: &mut Sequence) -> Self {
         let mut sizes = SIZES;
-        rng.shuffle(&mut sizes);
+        sizes.shuffle(rng);
         let segments = sizes.iter().flat_map(|size| {
             let seconds = HALF_RAD / (size * limits.max_rate_rad_s[axis]);
             let seconds = seconds.clamp(HALF_S[0], HALF_S[1]);

@@ -4,6 +4,7 @@ use super::{Now, Script};
 use crate::base::rng::Sequence;
 use crate::flight::pilot::cascade::Demand;
 use crate::model::constants::GRAVITY_M_S2;
+use rand::RngExt;
 
 /// Random thrust commands, each held for some time.
 #[derive(Debug, Default)]
@@ -34,7 +35,7 @@ impl Script for ThrottleSteps {
         if now.time >= self.until {
             let hover = now.limits.hover_command;
             let climb = now.view.velocity.z;
-            let up = if climb.abs() > DRIFT { climb < 0.0 } else { rng.unit() < 0.5 };
+            let up = if climb.abs() > DRIFT { climb < 0.0 } else { rng.random() };
             self.value = rng.uniform(if up { [hover, 1.0] } else { [-1.0, hover] });
             // The thrust curve taken as a line from nothing at -1 through hover.
             let pull = GRAVITY_M_S2 * (self.value - hover).abs() / (1.0 + hover);

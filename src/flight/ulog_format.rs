@@ -1,5 +1,6 @@
 //! Message formats of a ULog file, unfolded into numbers at byte offsets.
 
+use crate::flight::number::Number;
 use std::collections::HashMap;
 
 /// Nothing that PX4 logs comes near these.
@@ -17,76 +18,37 @@ pub struct Formats<'a> {
 pub struct Leaf {
     /// Such as `q[2]` or `esc[1].voltage`.
     pub name: String,
-    kind: Kind,
+    number: Number,
     /// From the start of the record.
     offset: usize,
 }
 
-#[derive(Clone, Copy)]
-enum Kind {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
-}
-
-impl Kind {
-    fn of(name: &str) -> Option<Self> {
-        Some(match name {
-            "int8_t" => Kind::I8,
-            "uint8_t" | "bool" | "char" => Kind::U8,
-            "int16_t" => Kind::I16,
-            "uint16_t" => Kind::U16,
-            "int32_t" => Kind::I32,
-            "uint32_t" => Kind::U32,
-            "int64_t" => Kind::I64,
-            "uint64_t" => Kind::U64,
-            "float" => Kind::F32,
-            "double" => Kind::F64,
-            _ => return None,
-        })
-    }
-
-    fn bytes(self) -> usize {
-        match self {
-            Kind::I8 | Kind::U8 => 1,
-            Kind::I16 | Kind::U16 => 2,
-            Kind::I32 | Kind::U32 | Kind::F32 => 4,
-            Kind::I64 | Kind::U64 | Kind::F64 => 8,
-        }
-    }
+/// The number that a type's name stands for.
+fn number(name: &str) -> Option<Number> {
+    Some(match name {
+        "int8_t" => Number::I8,
+        "uint8_t" | "bool" | "char" => Number::U8,
+        "int16_t" => Number::I16,
+        "uint16_t" => Number::U16,
+        "int32_t" => Number::I32,
+        "uint32_t" => Number::U32,
+        "int64_t" => Number::I64,
+        "uint64_t" => Number::U64,
+        "float" => Number::F32,
+        "double" => Number::F64,
+        _ => return None,
+    })
 }
 
 impl Leaf {
     /// Where it ends in a record.
     pub fn end(&self) -> usize {
-        self.offset + self.kind.bytes()
+        self.offset + self.number.size()
     }
 
     /// NaN where the record is too short.
     pub fn value(&self, record: &[u8]) -> f64 {
-        let Some(bytes) = record.get(self.offset..self.end()) else { return f64::NAN };
-        fn array<const N: usize>(bytes: &[u8]) -> [u8; N] {
-            std::array::from_fn(|i| bytes[i])
-        }
-        match self.kind {
-            Kind::I8 => i8::from_le_bytes(array(bytes)).into(),
-            Kind::U8 => bytes[0].into(),
-            Kind::I16 => i16::from_le_bytes(array(bytes)).into(),
-            Kind::U16 => u16::from_le_bytes(array(bytes)).into(),
-            Kind::I32 => i32::from_le_bytes(array(bytes)).into(),
-            Kind::U32 => u32::from_le_bytes(array(bytes)).into(),
-            Kind::I64 => i64::from_le_bytes(array(bytes)) as f64,
-            Kind::U64 => u64::from_le_bytes(array(bytes)) as f64,
-            Kind::F32 => f32::from_le_bytes(array(bytes)).into(),
-            Kind::F64 => f64::from_le_bytes(array(bytes)),
-        }
+        record.get(self.offset..self.end()).and_then(|bytes| self.number.value(bytes)).unwrap_or(f64::NAN)
     }
 }
 
@@ -139,10 +101,10 @@ impl Unfolding<'_, '_> {
                 if self.steps > MOST_LEAVES || depth > MOST_DEPTH || path.len() > MOST_NAME_BYTES {
                     return Err(format!("the format `{name}` is too large"));
                 }
-                match Kind::of(kind) {
-                    Some(kind) => {
-                        self.leaves.push(Leaf { name: path, kind, offset: self.offset });
-                        self.offset += kind.bytes();
+                match number(kind) {
+                    Some(number) => {
+                        self.leaves.push(Leaf { name: path, number, offset: self.offset });
+                        self.offset += number.size();
                     }
                     None => self.format(kind, &format!("{path}."), depth + 1)?,
                 }

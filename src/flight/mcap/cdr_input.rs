@@ -2,7 +2,7 @@
 
 use crate::flight::mcap::bytes::Bytes;
 use crate::flight::mcap::column::seconds;
-use crate::flight::mcap::schema::Number;
+use crate::flight::number::Number;
 
 /// What follows the CDR header, which alignment counts from.
 pub struct Input<'a> {
@@ -26,20 +26,17 @@ impl Input<'_> {
         Some(array)
     }
 
+    /// A number, aligned to its size.
     pub fn number(&mut self, number: Number) -> Option<f64> {
-        Some(match number {
-            Number::Bool => f64::from(self.array::<1>()? != [0]),
-            Number::I8 => i8::from_le_bytes(self.array()?).into(),
-            Number::U8 => u8::from_le_bytes(self.array()?).into(),
-            Number::I16 => i16::from_le_bytes(self.array()?).into(),
-            Number::U16 => u16::from_le_bytes(self.array()?).into(),
-            Number::I32 => i32::from_le_bytes(self.array()?).into(),
-            Number::U32 => u32::from_le_bytes(self.array()?).into(),
-            Number::I64 => i64::from_le_bytes(self.array()?) as f64,
-            Number::U64 => u64::from_le_bytes(self.array()?) as f64,
-            Number::F32 => f32::from_le_bytes(self.array()?).into(),
-            Number::F64 => f64::from_le_bytes(self.array()?),
-        })
+        self.align(number.size())?;
+        let bytes = self.rest.take(number.size())?;
+        if !self.big {
+            return number.value(bytes);
+        }
+        let mut turned = [0; 8];
+        turned[..bytes.len()].copy_from_slice(bytes);
+        turned[..bytes.len()].reverse();
+        number.value(&turned[..bytes.len()])
     }
 
     pub fn time(&mut self) -> Option<f64> {
