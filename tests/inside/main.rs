@@ -12,6 +12,7 @@ mod hidden_effects;
 mod lane;
 mod mappings;
 mod mcap;
+mod operations;
 mod python;
 mod quality;
 mod race;
