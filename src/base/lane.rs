@@ -240,6 +240,14 @@ pub trait Lane: Real {
     }
 }
 
+/// Replaces the numbers in one lane of each block.
+#[inline(always)]
+pub fn set_lanes<L: Lane>(own: &mut [L], lane: usize, new: &[L::Elem]) {
+    for (own, &new) in own.iter_mut().zip(new) {
+        own.set(lane, new);
+    }
+}
+
 /// Work of the matrix micro-kernel on register tiles of ROWS rows and BLOCKS 16-lane columns.
 pub trait Tiled {
     /// The body; mark it `#[inline(always)]`.

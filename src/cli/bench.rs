@@ -3,7 +3,7 @@
 use super::values::threads;
 use super::{CommandEnd, tell};
 use crate::base::lane::Level;
-use crate::present::bench::{BenchFigures, Pair, measure};
+use crate::present::bench::{BenchFigures, Pair, PeakShares, measure};
 use crate::race::config::{DEFAULT, Setup};
 use serde::Serialize;
 use std::time::Duration;
@@ -28,8 +28,9 @@ const HELP: &str = "Figures are environment steps of 10 ms a second, with the de
   environment  observation, noise, motion, gates, reward, ends and resets; commands held, no policy
   rollout      the environment flown by the stochastic policy, stored for learning
   training     rollout, advantages and all epochs of the update
-The peak is that of single-precision multiply-adds, each counted as two operations; training's share of it counts the \
-networks' multiply-adds and nothing else.";
+The peak is that of single-precision multiply-adds, each counted as two operations. Shares of it are those on all \
+threads: of physics and environment, every operation counts as if it were a multiply-add; of training, only the networks' \
+multiply-adds count; of rollout, both. A share does not depend on the machine's speed, so a loss shows in it.";
 
 fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
@@ -51,6 +52,7 @@ struct BenchReport<'a> {
     peak_flops_per_s_one_thread: f64,
     training_peak_share_one_thread: f64,
     training_flops_per_step: f64,
+    peak_shares: PeakShares,
     threads: usize,
     simd: &'a str,
 }
@@ -77,28 +79,32 @@ fn report(figures: &BenchFigures) -> BenchReport<'_> {
         peak_flops_per_s_one_thread: figures.peak_flops_per_s.one_thread,
         training_peak_share_one_thread: figures.training_peak_share_one_thread,
         training_flops_per_step: figures.training_flops_per_step,
+        peak_shares: figures.peak_shares,
         threads: figures.threads,
         simd: &figures.simd,
     }
 }
 
 fn table(figures: &BenchFigures) -> String {
-    let row = |name: &str, pair: Pair, unit: f64, unit_name: &str| {
+    let row = |name: &str, pair: Pair, unit: f64, unit_name: &str, share: &str| {
         let [one, all] = [pair.one_thread, pair.all_threads].map(|value| value / unit);
-        format!("{name:<14}{one:>12.2}{all:>14.2}   {unit_name}\n")
+        let line = format!("{name:<14}{one:>12.2}{all:>14.2}   {unit_name:<12}{share}");
+        line.trim_end().to_string() + "\n"
+    };
+    let stage = |name: &str, pair: Pair, share: Pair| {
+        row(name, pair, 1e6, "M steps/s", &format!("{:>4.1} % of the peak", 100.0 * share.all_threads))
     };
     let threads = match figures.threads {
         1 => "1 thread".into(),
         threads => format!("{threads} threads"),
     };
-    let share = Pair { one_thread: figures.training_peak_share_one_thread, all_threads: figures.training_peak_share };
+    let shares = &figures.peak_shares;
     let rows = [
-        row("physics", figures.physics_steps_per_s, 1e6, "M steps/s"),
-        row("environment", figures.environment_steps_per_s, 1e6, "M steps/s"),
-        row("rollout", figures.rollout_steps_per_s, 1e6, "M steps/s"),
-        row("training", figures.training_steps_per_s, 1e6, "M steps/s"),
-        row("peak", figures.peak_flops_per_s, 1e9, "GFLOP/s"),
-        row("  share", share, 0.01, "% of the peak reached by training"),
+        stage("physics", figures.physics_steps_per_s, shares.physics),
+        stage("environment", figures.environment_steps_per_s, shares.environment),
+        stage("rollout", figures.rollout_steps_per_s, shares.rollout),
+        stage("training", figures.training_steps_per_s, shares.training),
+        row("peak", figures.peak_flops_per_s, 1e9, "GFLOP/s", ""),
     ];
     format!("{:<14}{:>12}{threads:>14}   {}\n{}", "", "1 thread", figures.simd, rows.concat().trim_end())
 }

@@ -109,7 +109,7 @@ pub fn by_policy(
     let raced = dispatch(level, fly).remove(0);
     let mut recorder = Recorder::new(&race.vehicle, sensors, seed);
     for (craft, command, _) in &raced.steps {
-        recorder.craft.resume(&craft.map(f64::from));
+        recorder.craft.resume(craft, f64::from);
         recorder.hold(command.map(f64::from));
     }
     let crossings: Vec<f64> = raced.passes.iter().step_by(race.gates.len()).copied().collect();

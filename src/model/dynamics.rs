@@ -10,7 +10,7 @@ pub mod drag;
 pub mod extended;
 pub mod response;
 
-use crate::base::lane::{Lane, Real, build};
+use crate::base::lane::{Lane, Real, build, set_lanes};
 use crate::model::attitude::{Quaternion, body_axes, compose, dot, normalized, small_rotation};
 use crate::model::thrust;
 use crate::model::vehicle::Vehicle;
@@ -123,10 +123,11 @@ impl<L: Lane> State<L> {
     /// Replaces the state of one lane.
     pub fn set_lane(&mut self, lane: usize, new: &State<L::Elem>) {
         let State { position, velocity, attitude, command, voltage } = self;
-        let own = position.iter_mut().chain(velocity).chain(attitude).chain(command).chain([voltage]);
-        let State { position, velocity, attitude, command, voltage } = new;
-        let new = position.iter().chain(velocity).chain(attitude).chain(command).chain([voltage]);
-        own.zip(new).for_each(|(own, &new)| own.set(lane, new));
+        set_lanes(position, lane, &new.position);
+        set_lanes(velocity, lane, &new.velocity);
+        set_lanes(attitude, lane, &new.attitude);
+        set_lanes(command, lane, &new.command);
+        voltage.set(lane, new.voltage);
     }
 }
 
@@ -134,11 +135,14 @@ impl<L: Lane> Parameters<L> {
     /// Replaces the parameters of one lane.
     pub fn set_lane(&mut self, lane: usize, new: &Parameters<L::Elem>) {
         let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate } = self;
-        let own = alpha.iter_mut().chain(mean_alpha).chain(max_rate).chain(thrust).chain(drag);
-        let own = own.chain([dt, gravity, voltage_rate]);
-        let Parameters { dt, alpha, mean_alpha, max_rate, thrust, drag, gravity, voltage_rate } = new;
-        let new = alpha.iter().chain(mean_alpha).chain(max_rate).chain(thrust).chain(drag);
-        own.zip(new.chain([dt, gravity, voltage_rate])).for_each(|(own, &new)| own.set(lane, new));
+        set_lanes(alpha, lane, &new.alpha);
+        set_lanes(mean_alpha, lane, &new.mean_alpha);
+        set_lanes(max_rate, lane, &new.max_rate);
+        set_lanes(thrust, lane, &new.thrust);
+        set_lanes(drag, lane, &new.drag);
+        dt.set(lane, new.dt);
+        gravity.set(lane, new.gravity);
+        voltage_rate.set(lane, new.voltage_rate);
     }
 }
 

@@ -88,7 +88,9 @@ impl Kernel for Advance<'_> {
         let Advance { block, actions, steps } = self;
         let action = build!(|k| L::from_array(build!(|lane| actions[block.vehicles[lane]][k])));
         let mut craft = block.craft.map(|x| L::from_array(x.0));
-        craft.advance(action, steps);
-        block.craft = craft.map(|x| Portable(x.to_array()));
+        for _ in 0..steps {
+            craft.step(action);
+        }
+        block.craft.resume(&craft, |x| Portable(x.to_array()));
     }
 }

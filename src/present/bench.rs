@@ -27,6 +27,17 @@ pub struct Pair {
     pub all_threads: f64,
 }
 
+/// Shares of what the machine could do if it did multiply-adds only. Physics and environment are counted in operations, for
+/// each of which a multiply-add could be done; rollout and training in the networks' multiply-adds, rollout with the
+/// environment's operations. A stage that falls behind its earlier share has lost something, whatever the machine.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PeakShares {
+    pub physics: Pair,
+    pub environment: Pair,
+    pub rollout: Pair,
+    pub training: Pair,
+}
+
 /// The measured figures.
 #[derive(Clone, Debug, Serialize)]
 pub struct BenchFigures {
@@ -42,6 +53,8 @@ pub struct BenchFigures {
     pub training_steps_per_s: Pair,
     /// Single-precision multiply-add peak, operations a second, measured between the rounds.
     pub peak_flops_per_s: Pair,
+    /// Share of the peak that each stage reaches; see [`PeakShares`].
+    pub peak_shares: PeakShares,
     /// Share of the peak that training reaches on all threads, counting the networks' multiply-adds and nothing else.
     pub training_peak_share: f64,
     /// The same on one thread.
@@ -51,6 +64,11 @@ pub struct BenchFigures {
     pub threads: usize,
     pub simd: String,
 }
+
+/// Arithmetic of one step of a vehicle, each operation of a block counted once (a multiply-add too), loads and stores not:
+/// the model alone, and the environment where nobody passes a gate or begins anew. A test counts them.
+pub const PHYSICS_OPERATIONS: f64 = 162.0;
+pub const ENVIRONMENT_OPERATIONS: f64 = 1007.0;
 
 /// Operations of the networks for one environment step of training: one forward pass to collect it, and forward, weight
 /// gradients and input gradients (not of the first layer) in every epoch, a multiply-add counted as two.
@@ -92,14 +110,24 @@ pub fn measure(
     let (one, all) = (on(1), on(threads));
     let pair = |i: usize| Pair { one_thread: one[i], all_threads: all[i] };
     let flops = training_flops_per_step(race.observations(), config.ppo.epochs);
+    let share =
+        |i: usize, flops: f64| Pair { one_thread: one[i] * flops / one[4], all_threads: all[i] * flops / all[4] };
+    let forward = training_flops_per_step(race.observations(), 0);
+    let peak_shares = PeakShares {
+        physics: share(0, 2.0 * PHYSICS_OPERATIONS),
+        environment: share(1, 2.0 * ENVIRONMENT_OPERATIONS),
+        rollout: share(2, forward + 2.0 * ENVIRONMENT_OPERATIONS),
+        training: share(3, flops),
+    };
     BenchFigures {
         physics_steps_per_s: pair(0),
         environment_steps_per_s: pair(1),
         rollout_steps_per_s: pair(2),
         training_steps_per_s: pair(3),
         peak_flops_per_s: pair(4),
-        training_peak_share: all[3] * flops / all[4],
-        training_peak_share_one_thread: one[3] * flops / one[4],
+        peak_shares,
+        training_peak_share: peak_shares.training.all_threads,
+        training_peak_share_one_thread: peak_shares.training.one_thread,
         training_flops_per_step: flops,
         threads,
         simd: level.to_string(),

@@ -260,7 +260,7 @@ fn yaw_comes_later_than_roll() {
 fn held(vehicle: &Vehicle, from: [f64; 4], action: [f64; 4], voltage: f64, steps: usize) -> Craft<f64> {
     let s = State::new([0.0, 0.0, 10.0], [0.0; 3], [1.0, 0.0, 0.0, 0.0], from, voltage);
     let mut craft = craft(vehicle, s);
-    craft.advance(action, steps);
+    (0..steps).for_each(|_| craft.step(action));
     craft
 }
 

@@ -13,6 +13,7 @@ mod lane;
 mod mappings;
 mod mcap;
 mod older;
+mod operations;
 mod python;
 mod quality;
 mod race;

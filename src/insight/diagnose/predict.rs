@@ -5,7 +5,7 @@ use super::kinematics::{self, lagged, slopes};
 use super::model::Model;
 use super::numbers::BEGIN;
 use super::record::FlightRecord;
-use crate::base::lane::{Kernel, Lane32, Level, build, dispatch};
+use crate::base::lane::{build, fused};
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::period;
 use crate::model::attitude::{compose, dot, in_world, rotation_vector};
@@ -78,7 +78,11 @@ impl Predicted {
     }
 
     fn recomputed(self, dirty: Quantities, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
-        dispatch(Level::best(), Recompute { from: self, dirty, model, record, flight, x })
+        // One body for every processor: a fused multiply-add is an instruction there, and a call of a function elsewhere.
+        fused(
+            #[inline(always)]
+            || self.recompute(dirty, model, record, flight, x),
+        )
     }
 
     #[inline(always)]
@@ -224,25 +228,6 @@ impl Predicted {
             out.push(build!(|k| (next[k] - now[k]) / MOMENT_S));
         }
         out
-    }
-}
-
-/// A fused multiply-add is an instruction below a kernel, and a call of a function elsewhere.
-struct Recompute<'a> {
-    from: Predicted,
-    dirty: Quantities,
-    model: &'a Model,
-    record: &'a FlightRecord,
-    flight: usize,
-    x: &'a [f64],
-}
-
-impl Kernel for Recompute<'_> {
-    type Output = Predicted;
-
-    #[inline(always)]
-    fn run<L: Lane32>(self) -> Predicted {
-        self.from.recompute(self.dirty, self.model, self.record, self.flight, self.x)
     }
 }
 

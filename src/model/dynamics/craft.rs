@@ -68,11 +68,13 @@ impl<R: Copy> Craft<R> {
         Craft { state, equations }
     }
 
-    /// Goes on from where `other`, which obeys the same kind of equations, is.
-    pub fn resume(&mut self, other: &Self) {
-        self.state = other.state;
+    /// Goes on from where `other`, which obeys the same kind of equations, is, with its own parameters. Every number is
+    /// converted.
+    #[inline(always)]
+    pub fn resume<S: Copy>(&mut self, other: &Craft<S>, mut f: impl FnMut(S) -> R) {
+        self.state = other.state.map(&mut f);
         if let (Equations::Extended(own), Equations::Extended(other)) = (&mut self.equations, &other.equations) {
-            own.1 = other.1;
+            own.1 = other.1.map(f);
         }
     }
 }
@@ -99,27 +101,9 @@ impl<R: Real> Craft<R> {
     /// One step under the held command `action`.
     #[inline(always)]
     pub fn step(&mut self, action: [R; 4]) {
-        self.advance(action, 1);
-    }
-
-    /// So many steps under the held command `action`.
-    #[inline(always)]
-    pub fn advance(&mut self, action: [R; 4], steps: usize) {
-        let Craft { state, equations } = self;
-        match equations {
-            Equations::Compact(p) => {
-                // A copy stays in registers from one step to the next.
-                let mut flying = *state;
-                for _ in 0..steps {
-                    step(&mut flying, p, action);
-                }
-                *state = flying;
-            }
-            Equations::Extended(e) => {
-                for _ in 0..steps {
-                    extended::step(state, &e.0, &mut e.1, action);
-                }
-            }
+        match &mut self.equations {
+            Equations::Compact(p) => step(&mut self.state, p, action),
+            Equations::Extended(e) => extended::step(&mut self.state, &e.0, &mut e.1, action),
         }
     }
 

@@ -5,7 +5,7 @@ mod motion;
 mod stages;
 
 use super::{Factors, Parameters, State, battery};
-use crate::base::lane::{Lane, Real, build};
+use crate::base::lane::{Lane, Real, build, set_lanes};
 use crate::model::effects::{self, EffectValues};
 use crate::model::vehicle::Vehicle;
 
@@ -71,7 +71,7 @@ impl<L: Lane> Extended<L> {
     /// Replaces the numbers of one lane.
     pub fn set_lane(&mut self, lane: usize, new: &Extended<L::Elem>) {
         self.compact.set_lane(lane, &new.compact);
-        self.tau.iter_mut().zip(new.tau).for_each(|(own, new)| own.set(lane, new));
+        set_lanes(&mut self.tau, lane, &new.tau);
         self.full_v.set(lane, new.full_v);
         self.empty_v.set(lane, new.empty_v);
         self.values.set_lane(lane, &new.values);
@@ -85,12 +85,10 @@ pub fn step<R: Real>(s: &mut State<R>, p: &Extended<R>, memory: &mut Memory<R>, 
     R::vectorize(
         #[inline(always)]
         || {
-            memory.push(action);
-            let delay = command_delays(p);
+            let held = memory.hold(action, command_delays(p));
             let h = p.compact.dt * R::of(1.0 / f64::from(p.parts));
             for _ in 0..p.parts {
-                memory.phase = memory.phase + h;
-                let sent = build!(|k| memory.arriving(k, delay[k], h));
+                let sent = memory.arriving(&held, h);
                 part(s, p, memory, sent, h);
             }
         },

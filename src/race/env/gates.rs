@@ -1,6 +1,6 @@
 //! Gates as the vehicle meets them: the target gate's frame, and what counts as passing it (paper section 4.3).
 
-use crate::base::lane::{Lane, Real, build, each};
+use crate::base::lane::{Lane, Mask, Real, build, each, set_lanes};
 use crate::model::attitude::dot;
 use crate::model::track::{GateKind, Track};
 
@@ -58,14 +58,10 @@ impl<L: Lane> GateFrame<L> {
     /// Makes `gate` the target of one lane.
     pub fn set_lane(&mut self, lane: usize, gate: &GateFrame<L::Elem>) {
         let GateFrame { center, axes, radius, next } = self;
-        let own = center.iter_mut().chain(axes.iter_mut().flatten()).chain([radius]).chain(next.iter_mut().flatten());
-        let new = gate
-            .center
-            .iter()
-            .chain(gate.axes.iter().flatten())
-            .chain([&gate.radius])
-            .chain(gate.next.iter().flatten());
-        own.zip(new).for_each(|(own, &new)| own.set(lane, new));
+        set_lanes(center, lane, &gate.center);
+        set_lanes(axes.as_flattened_mut(), lane, gate.axes.as_flattened());
+        set_lanes(next.as_flattened_mut(), lane, gate.next.as_flattened());
+        radius.set(lane, gate.radius);
     }
 }
 
@@ -73,6 +69,9 @@ impl<L: Lane> GateFrame<L> {
 #[inline(always)]
 pub fn crossing<R: Real>(before: [R; 3], after: [R; 3], radius: R) -> Crossing<R> {
     let crossed = before[0].lt(R::zero()) & R::zero().le(after[0]);
+    if !crossed.any() {
+        return Crossing { passed: crossed, missed: crossed, fraction: R::zero() };
+    }
     let fraction = before[0] / R::select(crossed, before[0] - after[0], R::one());
     let y = fraction.mul_add(after[1] - before[1], before[1]);
     let z = fraction.mul_add(after[2] - before[2], before[2]);

@@ -1,6 +1,6 @@
 //! What the extended model remembers beyond the compact model's state.
 
-use crate::base::lane::{Lane, Real};
+use crate::base::lane::{Lane, Mask, Real, build, set_lanes};
 use crate::model::constants::CONTROL_S;
 
 /// Commands kept: a delay may be this many control periods less one.
@@ -42,32 +42,55 @@ impl<R: Copy> Memory<R> {
 impl<L: Lane> Memory<L> {
     /// Replaces the memory of one lane.
     pub fn set_lane(&mut self, lane: usize, new: &Memory<L::Elem>) {
-        for (own, new) in self.line.iter_mut().zip(&new.line) {
-            own.iter_mut().zip(new).for_each(|(own, &new)| own.set(lane, new));
-        }
+        set_lanes(self.line.as_flattened_mut(), lane, new.line.as_flattened());
         self.phase.set(lane, new.phase);
-        self.slope.iter_mut().zip(&new.slope).for_each(|(own, &new)| own.set(lane, new));
+        set_lanes(&mut self.slope, lane, &new.slope);
         self.polarisation.set(lane, new.polarisation);
     }
 }
 
 impl<R: Real> Memory<R> {
-    /// Takes the held command `action` in; a new place in the line begins with each control period.
+    /// Takes in the held command `action`, of which roll, pitch, yaw and thrust arrive `delay` seconds late. What is never
+    /// late needs no memory, and is not remembered.
     #[inline(always)]
-    pub fn push(&mut self, action: [R; 4]) {
+    pub fn hold(&mut self, action: [R; 4], delay: [R; 4]) -> Held<R> {
+        let mut late = R::zero().lt(delay[0]);
+        for delay in &delay[1..] {
+            late = late | R::zero().lt(*delay);
+        }
+        let late = late.any();
+        if late {
+            self.push();
+        }
+        self.line[0] = action;
+        Held { delay, late }
+    }
+
+    /// Makes room for another command where a control period has gone by since the last.
+    #[inline(always)]
+    fn push(&mut self) {
         let due = R::of(CONTROL_S - 1e-5).le(self.phase);
         for age in (1..LINE).rev() {
             for k in 0..4 {
                 self.line[age][k] = R::select(due, self.line[age - 1][k], self.line[age][k]);
             }
         }
-        self.line[0] = action;
         self.phase = R::select(due, R::zero(), self.phase);
+    }
+
+    /// What arrives on average during the next `h` seconds.
+    #[inline(always)]
+    pub fn arriving(&mut self, held: &Held<R>, h: R) -> [R; 4] {
+        if !held.late {
+            return self.line[0];
+        }
+        self.phase = self.phase + h;
+        build!(|k| self.arrived(k, held.delay[k], h))
     }
 
     /// The mean of what arrived of command `k`, `late` seconds late, during the last `h` seconds.
     #[inline(always)]
-    pub fn arriving(&self, k: usize, late: R, h: R) -> R {
+    fn arrived(&self, k: usize, late: R, h: R) -> R {
         let (from, to) = (self.phase - h - late, self.phase - late);
         let mut sum = self.line[0][k] * (to.max(R::zero()) - from.max(R::zero()));
         for (age, command) in self.line.iter().enumerate().skip(1) {
@@ -78,4 +101,13 @@ impl<R: Real> Memory<R> {
         }
         sum / h
     }
+}
+
+/// How a held command arrives.
+#[derive(Clone, Copy, Debug)]
+pub struct Held<R> {
+    /// Of roll, pitch, yaw, thrust, s.
+    delay: [R; 4],
+    /// Whether any arrives late, in any lane.
+    late: bool,
 }
