@@ -39,12 +39,20 @@ impl Plan {
             Manoeuvre::RollSteps | Manoeuvre::PitchSteps | Manoeuvre::YawSteps | Manoeuvre::RateSteps => {
                 turning(kind, size, view, limits, rng)
             }
-            Manoeuvre::RollDoublets | Manoeuvre::PitchDoublets | Manoeuvre::YawDoublets => turning(kind, size, view, limits, rng),
+            Manoeuvre::RollDoublets | Manoeuvre::PitchDoublets | Manoeuvre::YawDoublets => {
+                turning(kind, size, view, limits, rng)
+            }
             Manoeuvre::RollFlip | Manoeuvre::PitchFlip | Manoeuvre::YawSpin => turning(kind, size, view, limits, rng),
-            Manoeuvre::ThrottleSteps | Manoeuvre::Punch | Manoeuvre::PunchTurns | Manoeuvre::LowHover => pushing(kind, size, view, rng),
+            Manoeuvre::ThrottleSteps | Manoeuvre::Punch | Manoeuvre::PunchTurns | Manoeuvre::LowHover => {
+                pushing(kind, size, view, rng)
+            }
             Manoeuvre::Chop | Manoeuvre::RampUp | Manoeuvre::RampDown => pushing(kind, size, view, rng),
-            Manoeuvre::Forward | Manoeuvre::Backward | Manoeuvre::Left | Manoeuvre::Right => travelling(kind, size, view, rng),
-            Manoeuvre::Climb | Manoeuvre::Descent | Manoeuvre::Dive | Manoeuvre::Circle => travelling(kind, size, view, rng),
+            Manoeuvre::Forward | Manoeuvre::Backward | Manoeuvre::Left | Manoeuvre::Right => {
+                travelling(kind, size, view, rng)
+            }
+            Manoeuvre::Climb | Manoeuvre::Descent | Manoeuvre::Dive | Manoeuvre::Circle => {
+                travelling(kind, size, view, rng)
+            }
         }
     }
 
@@ -133,7 +141,9 @@ fn pushing(kind: Manoeuvre, size: Size, view: &View, rng: &mut Sequence) -> Plan
             let seconds = rng.uniform([0.5, 1.6]);
             over_spot(view, rng.uniform([58.0, 68.0]), throttle(&[(seconds, -1.0, -1.0), (0.2, 1.0, 1.0)]))
         }
-        Manoeuvre::RampUp => over_spot(view, rng.uniform([38.0, 48.0]), throttle(&[(rng.uniform([0.8, 2.0]), -1.0, 1.0)])),
+        Manoeuvre::RampUp => {
+            over_spot(view, rng.uniform([38.0, 48.0]), throttle(&[(rng.uniform([0.8, 2.0]), -1.0, 1.0)]))
+        }
         // A ramp down.
         _ => over_spot(view, rng.uniform([18.0, 28.0]), throttle(&[(rng.uniform([0.8, 2.0]), 1.0, -1.0)])),
     }
