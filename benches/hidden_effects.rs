@@ -1,7 +1,8 @@
-//! What `racer diagnose` finds of effects that an independent simulator hid: `cargo bench --bench hidden_effects -- --n 300`.
+//! What `racer diagnose` finds of effects that an independent simulator hid: `cargo bench --bench hidden_effects -- --n
+//! 300`.
 //!
-//! Each log is drawn, flown, written under a neutral name beside the vehicle without effects, and given to the shipped program; its
-//! JSON is all that is scored. The truth never touches the folder before the program has ended.
+//! Each log is drawn, flown, written under a neutral name beside the vehicle without effects, and given to the shipped
+//! program; its JSON is all that is scored. The truth never touches the folder before the program has ended.
 
 #[path = "hidden_effects/answer.rs"]
 mod answer;

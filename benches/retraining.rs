@@ -1,11 +1,13 @@
-//! Whether a policy that was trained in the vehicle that `racer diagnose --extend` writes flies better where the effect is real:
+//! Whether a policy that was trained in the vehicle that `racer diagnose --extend` writes flies better where the effect
+//! is real:
 //! `cargo bench --bench retraining -- --effects rate_delay,voltage_sag,axial_inflow --minutes 2 --seeds 1`.
 //!
-//! An effect is hidden in an independent simulator, a flight there is logged and given to the shipped program beside the vehicle
-//! without the effect, policies are trained with the same budget in that vehicle and in the extended one, and both race in the
-//! independent simulator. The control is the first policy's race there without the effect.
+//! An effect is hidden in an independent simulator, a flight there is logged and given to the shipped program beside
+//! the vehicle without the effect, policies are trained with the same budget in that vehicle and in the extended one,
+//! and both race in the independent simulator. The control is the first policy's race there without the effect.
 //!
-//! `cargo bench --bench retraining -- --policy RUN --svg lap.svg` races a policy that is there in both simulators, and draws the laps.
+//! `cargo bench --bench retraining -- --policy RUN --svg lap.svg` races a policy that is there in both simulators, and
+//! draws the laps.
 
 #[path = "retraining/args.rs"]
 mod args;

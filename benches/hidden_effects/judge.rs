@@ -40,7 +40,8 @@ impl Judged {
         self.answer.as_ref().ok()
     }
 
-    /// Names that count: not those of the untouched log, and drift only where that is what is wanted, as for a wrong mass.
+    /// Names that count: not those of the untouched log, and drift only where that is what is wanted, as for a wrong
+    /// mass.
     fn fresh<'a>(&'a self, answer: &'a Answer) -> impl Iterator<Item = &'a Finding> {
         answer.findings.iter().filter(|finding| match finding.status {
             Status::Named | Status::NamedSet => !self.before.contains(&finding.effect),

@@ -1,4 +1,5 @@
-//! A policy's nominal lap in racer's simulator beside the one in the independent simulator (the paper's Figure 5 has the real flight there).
+//! A policy's nominal lap in racer's simulator beside the one in the independent simulator (the paper's Figure 5 has
+//! the real flight there).
 
 use crate::args::Args;
 use crate::race::{self, Raced};

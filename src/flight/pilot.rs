@@ -87,7 +87,8 @@ pub struct Pilot {
 }
 
 impl Pilot {
-    /// A pilot that flies all kinds of manoeuvres, but for the low hover in a short flight; `seed` decides their order and sizes.
+    /// A pilot that flies all kinds of manoeuvres, but for the low hover in a short flight; `seed` decides their order
+    /// and sizes.
     pub fn new(seed: u64, limits: Limits) -> Self {
         Self {
             limits,

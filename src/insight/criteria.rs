@@ -1,5 +1,5 @@
-//! Every threshold that decides something about a log, an identification or a diagnosis, by the question that it answers, each with
-//! where it comes from. Tolerances of an algorithm and sizes of a filter stand beside the algorithm.
+//! Every threshold that decides something about a log, an identification or a diagnosis, by the question that it
+//! answers, each with where it comes from. Tolerances of an algorithm and sizes of a filter stand beside the algorithm.
 //!
 //! `cargo bench --bench hidden_effects -- --criteria` scales each by half and by two and says what changes.
 
@@ -42,7 +42,8 @@ pub struct Criterion {
 }
 
 /// Why many are what they are.
-pub(crate) const UNRECORDED: &str = "set while the hidden-effect benchmark and the measured flights were looked at; what else was tried is not on record";
+pub(crate) const UNRECORDED: &str = "set while the hidden-effect benchmark and the measured flights \
+    were looked at; what else was tried is not on record";
 
 /// Factors that [`scale`] set.
 static FACTORS: OnceLock<BTreeMap<&'static str, f64>> = OnceLock::new();

@@ -1,5 +1,5 @@
-//! How numbers are estimated from samples, once for identification and diagnosis: bounded least squares, weights that outliers do not
-//! rule, noise that remembers, and intervals that hold for it.
+//! How numbers are estimated from samples, once for identification and diagnosis: bounded least squares, weights that
+//! outliers do not rule, noise that remembers, and intervals that hold for it.
 
 pub mod autoregression;
 pub mod gram;

@@ -1,7 +1,7 @@
 //! From flight logs to a vehicle (paper section 4.1 and Table 1).
 //!
-//! Each part of the model is fitted on the first 70 % of the flight and validated on the rest; the values are then fitted
-//! once more on all of it. What the logs cannot tell is taken from a base vehicle, and marked.
+//! Each part of the model is fitted on the first 70 % of the flight and validated on the rest; the values are then
+//! fitted once more on all of it. What the logs cannot tell is taken from a base vehicle, and marked.
 
 pub mod battery;
 pub mod bias;

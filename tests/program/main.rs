@@ -1,6 +1,7 @@
 //! The program as its users meet it: what they type, what is printed where, what is left on disk.
 
 mod cli;
+mod criteria;
 mod diagnose_report;
 mod examples;
 mod identify;

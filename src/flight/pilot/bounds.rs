@@ -15,7 +15,8 @@ const MARGIN_M: f64 = 8.0;
 const BRAKING: f64 = 6.0;
 /// Time that a vehicle goes on before it begins to brake, s.
 const REACTION_S: f64 = 0.35;
-/// Time for which thrust goes on after the throttle is closed, s, and the deceleration of a climb with what idle leaves, m/s2.
+/// Time for which thrust goes on after the throttle is closed, s, and the deceleration of a climb with what idle
+/// leaves, m/s2.
 const CLOSING_S: f64 = 0.09;
 const IDLE_SINK: f64 = 0.7 * GRAVITY_M_S2;
 

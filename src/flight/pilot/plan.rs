@@ -31,7 +31,8 @@ const LOW_M: f64 = 10.0;
 const FASTEST: f64 = 20.0;
 
 impl Plan {
-    /// The manoeuvre of this kind after `flown` others of it. The first is flown at full size, and directions alternate.
+    /// The manoeuvre of this kind after `flown` others of it. The first is flown at full size, and directions
+    /// alternate.
     pub fn new(kind: Manoeuvre, flown: usize, view: &View, limits: &Limits, rng: &mut Sequence) -> Self {
         let sign = if flown.is_multiple_of(2) { 1.0 } else { -1.0 };
         let size = Size { sign, share: if flown == 0 { 1.0 } else { rng.random() } };

@@ -1,5 +1,5 @@
-//! What is known of a number beforehand? Standard deviations of a normal prior about the base vehicle's number: wide enough that a minute of
-//! flight overrules them, so that they only hold numbers that the flight does not tell.
+//! What is known of a number beforehand? Standard deviations of a normal prior about the base vehicle's number: wide
+//! enough that a minute of flight overrules them, so that they only hold numbers that the flight does not tell.
 
 use super::criteria;
 

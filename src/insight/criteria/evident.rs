@@ -6,11 +6,14 @@ criteria! {
     "Is it evident?";
 
     /// Fall of the whitened squares for which an effect is added.
-    LEAST_GAIN = 30.0, Theory("5.5 standard deviations: by chance once in some 25 million directions, of which each round tries about a hundred; noise is less white than that");
-    /// Robust score (squared standard deviations over stretches) for which an effect is added.
-    LEAST_EVIDENCE = 9.0, Theory("three standard deviations, by the spread over stretches of time");
-    /// Share of both from which an effect is worth a fit of its own.
-    WORTH_A_FIT = 0.5, Assumed("the score test is linear: a fit can gain more than it expects");
+    LEAST_GAIN = 30.0,
+        Theory("5.5 standard deviations: by chance once in some 25 million directions, of which each round tries \
+            about a hundred; noise is less white than that");
+    /// Fall of the whitened squares from which an effect is worth a fit of its own.
+    GAIN_WORTH_A_FIT = 15.0,
+        Assumed("half the least gain: the score test is linear, and a fit can gain more than it expects");
+    /// Robust score (squared standard deviations over stretches) from which it is.
+    EVIDENCE_WORTH_A_FIT = 4.5, Theory("two standard deviations, by the spread over stretches of time");
     /// Fall of the whitened squares for which even a few stretches are worth a fit.
     RARE_GAIN = 100.0, Assumed(UNRECORDED);
     /// Fall of the whitened squares for which an effect of no size that matters is kept beside the causes.
@@ -21,8 +24,11 @@ criteria! {
     MOST_EFFECTS = 8.0, Assumed("more than any flight has shown");
     /// Share of its gain that an effect keeps where a number of it ends at the bound of its range.
     BOUNDED_MERIT = 0.5, Assumed(UNRECORDED);
-    /// Largest sum of the coefficients of a channel's memory: a constant residual keeps at least what is left to 1 of its size.
-    MOST_MEMORY = 0.6, Assumed("on measured flights a freer noise model takes every slow cause for noise; the bound itself was not compared with others");
+    /// Largest sum of the coefficients of a channel's memory: a constant residual keeps at least what is left to 1 of
+    /// its size.
+    MOST_MEMORY = 0.6,
+        Assumed("on measured flights a freer noise model takes every slow cause for noise; the bound itself was not \
+            compared with others");
     /// Standard deviations that the size of a named effect has to be.
     SURE_DEVIATIONS = 4.0, Theory("one in 16 000 by chance: of a catalogue of forty, once in four hundred flights");
     /// Share of a channel's residual from which an effect explains anything of it.

@@ -7,7 +7,8 @@ criteria! {
 
     /// Stretches of flight that have to agree before an effect is named.
     AGREEING_STRETCHES = 15.0, Assumed(UNRECORDED);
-    /// Standard deviations by which a stretch has to show an effect to count by itself, and against it to count as one less.
+    /// Standard deviations by which a stretch has to show an effect to count by itself, and against it to count as one
+    /// less.
     STRETCH_DEVIATIONS = 2.0, Theory("one in forty by chance");
     /// Stretches that have to show a rarely flown effect by themselves.
     RARE_STRETCHES = 4.0, Theory("all four by chance: one in three million");

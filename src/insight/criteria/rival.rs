@@ -13,7 +13,8 @@ criteria! {
     SAME_DELAY_S = 6e-4, Assumed("a third of the IMU's period at 500 Hz");
     /// The same as a share of the delay.
     SAME_DELAY_SHARE = 0.05, Assumed("both are known to a few percent");
-    /// Difference of a lag of the velocity from the shift of its clock, as a share of that, up to which it comes from it.
+    /// Difference of a lag of the velocity from the shift of its clock, as a share of that, up to which it comes from
+    /// it.
     SAME_LAG_SHARE = 0.5, Assumed("the lag is known worse than the shift");
     /// A delay of less than so many times the mean delay of the lost commands is theirs.
     LOST_DELAY = 3.0, Assumed("bursts of lost commands have a mean delay beyond a single one's");

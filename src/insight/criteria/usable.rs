@@ -8,7 +8,8 @@ criteria! {
     /// Equal samples in a row at a signal's largest size that are clipping.
     CLIPPED_RUN = 5.0, Assumed("chance repeats a noisy sample once or twice, not five times");
     /// Rate below which nothing clips, rad/s.
-    CLIPPED_RATE = 8.0, Assumed("gyros of hobby vehicles end at 17 or 35 rad/s; a quiet quantised signal repeats itself too");
+    CLIPPED_RATE = 8.0,
+        Assumed("gyros of hobby vehicles end at 17 or 35 rad/s; a quiet quantised signal repeats itself too");
     /// Specific force below which nothing clips, m/s2.
     CLIPPED_FORCE = 30.0, Assumed("accelerometers of hobby vehicles end at 4 g or later");
     /// Kept away from clipping, s.

@@ -7,7 +7,7 @@ use super::problem::Problem;
 use super::size::is_bounded;
 use super::whiten::Whitener;
 use crate::insight::criteria::evident::{
-    BOUNDED_MERIT, LEAST_EVIDENCE, LEAST_GAIN, RARE_GAIN, SHORT_LIST, WORTH_A_FIT,
+    BOUNDED_MERIT, EVIDENCE_WORTH_A_FIT, GAIN_WORTH_A_FIT, LEAST_GAIN, RARE_GAIN, SHORT_LIST,
 };
 use crate::insight::criteria::rival::TIE_DEVIATIONS;
 use crate::model::effects::{Card, are_rivals};
@@ -61,9 +61,8 @@ fn chosen(found: &[Candidate], order: &[(usize, f64, f64)]) -> Vec<usize> {
         let known = chosen.iter().any(|&i| found[i].card().id == card.id);
         let leader = chosen.first().map(|&i| found[i].card());
         let rival = leader.is_some_and(|l| are_rivals(l, card));
-        let share = WORTH_A_FIT.get();
-        let often = evidence > share * LEAST_EVIDENCE.get();
-        let evident = gain > share * LEAST_GAIN.get() && (often || gain > RARE_GAIN.get());
+        let often = evidence > EVIDENCE_WORTH_A_FIT.get();
+        let evident = gain > GAIN_WORTH_A_FIT.get() && (often || gain > RARE_GAIN.get());
         if !known && evident && (chosen.len() < SHORT_LIST.count() || rival) {
             chosen.push(j);
         }

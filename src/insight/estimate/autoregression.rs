@@ -12,8 +12,8 @@ pub struct Autoregression {
     pub predicted: f64,
 }
 
-/// Least squares of each value on the `order` before it. `follows(i)` tells whether value `i` comes right after the one before;
-/// a value with a gap in its past is not fitted.
+/// Least squares of each value on the `order` before it. `follows(i)` tells whether value `i` comes right after the one
+/// before; a value with a gap in its past is not fitted.
 pub fn autoregression(x: &[f64], follows: impl Fn(usize) -> bool, order: usize) -> Autoregression {
     let mut normal = DMatrix::<f64>::zeros(order, order);
     let mut right = DVector::<f64>::zeros(order);

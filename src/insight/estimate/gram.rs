@@ -23,8 +23,8 @@ pub struct Grams {
 }
 
 impl Grams {
-    /// Of `columns`, each with values by channel, whitened; a channel that a column does not touch may be empty. `rows` are those of each
-    /// channel, `blocks` the number of stretches.
+    /// Of `columns`, each with values by channel, whitened; a channel that a column does not touch may be empty. `rows`
+    /// are those of each channel, `blocks` the number of stretches.
     pub fn new<C: AsRef<[Vec<f64>]> + Sync, R: Stretch>(columns: &[&C], rows: &[Vec<R>], blocks: usize) -> Self {
         let n = columns.len();
         let active = |c: usize| (0..n).filter(|&j| !columns[j].as_ref()[c].is_empty()).collect::<Vec<_>>();

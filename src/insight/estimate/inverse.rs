@@ -5,8 +5,8 @@ use nalgebra::DMatrix;
 /// Added to the diagonal of the correlation form: columns that are the same to twelve digits are taken for the same.
 const SINGULAR: f64 = 1e-12;
 
-/// The inverse of a symmetric matrix with `ridge` on its diagonal, by way of its correlation form: units differ by orders of
-/// magnitude. `None` where it is not positive.
+/// The inverse of a symmetric matrix with `ridge` on its diagonal, by way of its correlation form: units differ by
+/// orders of magnitude. `None` where it is not positive.
 pub fn inverse(matrix: &DMatrix<f64>, ridge: &[f64]) -> Option<DMatrix<f64>> {
     let n = matrix.nrows();
     let scale: Vec<f64> = (0..n).map(|i| (matrix[(i, i)] + ridge[i]).max(1e-300).sqrt().recip()).collect();

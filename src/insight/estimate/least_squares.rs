@@ -23,8 +23,8 @@ pub struct Normal<'a> {
 
 /// How a step that does not lower the squares is made shorter.
 pub enum Shorter<'a> {
-    /// Levenberg and Marquardt: by more weight on the diagonal, remembered from one step to the next. It bends toward the steepest way
-    /// down, which costs a new solution each time: for few numbers far from the minimum.
+    /// Levenberg and Marquardt: by more weight on the diagonal, remembered from one step to the next. It bends toward
+    /// the steepest way down, which costs a new solution each time: for few numbers far from the minimum.
     Damped(&'a mut f64),
     /// By half, so many times at most: for steps whose squares cost a prediction of whole flights.
     Halved(i32),
@@ -34,8 +34,8 @@ pub enum Shorter<'a> {
 const DAMPING: [f64; 2] = [1e-9, 100.0];
 
 impl Normal<'_> {
-    /// The step to the minimum, with `damping` times its own information on each number's diagonal. Numbers at a bound that they push
-    /// against, and those that nothing tells, stay.
+    /// The step to the minimum, with `damping` times its own information on each number's diagonal. Numbers at a bound
+    /// that they push against, and those that nothing tells, stay.
     pub fn step(&self, at: &[Bounded], damping: f64) -> Option<Vec<f64>> {
         let own = |j: usize| self.matrix[(j, j)];
         let mut moving: Vec<usize> = (0..at.len()).filter(|&j| own(j) + self.ridge[j] > 0.0).collect();
@@ -58,8 +58,8 @@ impl Normal<'_> {
         }
     }
 
-    /// The first step that brings the squares below `before`: the values that it leads to, their squares, and what `squares`, which makes
-    /// both, says besides. `None` where no part of it does.
+    /// The first step that brings the squares below `before`: the values that it leads to, their squares, and what
+    /// `squares`, which makes both, says besides. `None` where no part of it does.
     pub fn descend<T>(
         &self,
         at: &[Bounded],

@@ -1,5 +1,5 @@
-//! Ranges in which the compact model's numbers are looked for: wider than any multirotor's, so that what ends there is not told by the
-//! flight. Assumed.
+//! Ranges in which the compact model's numbers are looked for: wider than any multirotor's, so that what ends there is
+//! not told by the flight. Assumed.
 
 /// Time constants of rates and thrust, s.
 pub const TIME_CONSTANT_S: [f64; 2] = [5e-4, 0.3];

@@ -8,7 +8,8 @@ pub fn huber(z: f64, bound: f64) -> f64 {
     (bound / z.abs()).min(1.0)
 }
 
-/// `x` with everything beyond so many robust standard deviations of zero set to that limit; `least` is the least standard deviation.
+/// `x` with everything beyond so many robust standard deviations of zero set to that limit; `least` is the least
+/// standard deviation.
 pub fn capped(x: &[f64], deviations: f64, least: f64) -> Vec<f64> {
     let cap = deviations * robust_sd(x).max(least);
     x.iter().map(|x| x.clamp(-cap, cap)).collect()

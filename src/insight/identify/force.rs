@@ -98,7 +98,8 @@ impl<'a> Force<'a> {
         self.data.choose(part, known)
     }
 
-    /// c0..c5 by linear least squares on the vertical specific force at this time constant, without drag; and what is left.
+    /// c0..c5 by linear least squares on the vertical specific force at this time constant, without drag; and what is
+    /// left.
     fn linear(&self, tau: f64, chosen: &Chosen) -> Option<([f64; 6], f64)> {
         let used: Vec<usize> = (0..6).filter(|&k| self.terms.thrust[k]).collect();
         let (u, v) = (Data::pick(&self.command(tau), chosen), Data::pick(&self.voltage, chosen));

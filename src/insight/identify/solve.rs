@@ -50,8 +50,8 @@ impl Solution {
 /// Residuals of each channel at these values.
 pub type Residuals<'a> = dyn Fn(&[f64]) -> Vec<Vec<f64>> + Sync + 'a;
 
-/// Minimises the weighted squares of `residuals(values)`: channels of equally many samples. `blocks` numbers the stretch of
-/// time of each sample: residuals of different stretches are taken for independent, those of one are not.
+/// Minimises the weighted squares of `residuals(values)`: channels of equally many samples. `blocks` numbers the
+/// stretch of time of each sample: residuals of different stretches are taken for independent, those of one are not.
 /// `None` where there are fewer stretches than unknowns, or the residuals are not finite.
 pub fn solve(unknowns: &[Unknown], blocks: &[u32], residuals: &Residuals) -> Option<Solution> {
     let stretches = blocks.iter().collect::<BTreeSet<_>>().len();

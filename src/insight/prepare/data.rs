@@ -8,8 +8,8 @@ use crate::insight::quality::Quality;
 /// the rest (paper section 4.1).
 pub const TRAIN_SHARE: f64 = 0.7;
 
-/// Residuals of different stretches of time are taken for independent. Their length, s: longer than the noise remembers, and
-/// so many stretches that their spread can be told.
+/// Residuals of different stretches of time are taken for independent. Their length, s: longer than the noise
+/// remembers, and so many stretches that their spread can be told.
 const BLOCK_S: [f64; 2] = [0.3, 2.0];
 const BLOCKS: f64 = 100.0;
 

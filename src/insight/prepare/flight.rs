@@ -46,8 +46,8 @@ impl PreparedFlight {
         Self { voltage, velocity, attitude, position, usable, block, time, quality }
     }
 
-    /// What command `k` of the setpoints, delayed by `delay`, has become at each sample behind a first-order lag of `tau`
-    /// seconds. Commands are held until the next, and the lag is integrated exactly.
+    /// What command `k` of the setpoints, delayed by `delay`, has become at each sample behind a first-order lag of
+    /// `tau` seconds. Commands are held until the next, and the lag is integrated exactly.
     pub fn response(&self, k: usize, tau: f64, delay: f64) -> Vec<f64> {
         let setpoint = &self.quality.log.setpoint;
         let known: Vec<usize> = (0..setpoint.len()).filter(|&i| setpoint.rows[i][k].is_finite()).collect();

@@ -1,4 +1,5 @@
-//! Turning that nobody asked for: a vehicle thrown into the air, bumped or out of control. No model of its response describes that.
+//! Turning that nobody asked for: a vehicle thrown into the air, bumped or out of control. No model of its response
+//! describes that.
 
 use super::{LogFinding, Severity};
 use crate::flight::Log;
@@ -39,7 +40,8 @@ pub fn find(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     holes
 }
 
-/// Largest of `x` over the last [`COMMAND_MEMORY_S`]; NaN counts as nothing, and where there is nothing else no rate is too large.
+/// Largest of `x` over the last [`COMMAND_MEMORY_S`]; NaN counts as nothing, and where there is nothing else no rate is
+/// too large.
 fn largest(times: &[f64], x: &[f64]) -> Vec<f64> {
     let memory_s = COMMAND_MEMORY_S.get();
     let mut queue = std::collections::VecDeque::<usize>::new();

@@ -75,7 +75,8 @@ pub fn keep(fitted: Result<Fitted, String>, axis: usize, out: &mut Identificatio
         let better = rate.compare(DataPart::Validation, &late).score();
         if late.values[3] > REMARKED_DELAY_S.get() && better.rmse < REMARKED_ERROR.get() * score.rmse {
             out.remark(format!(
-                "{name}: a pure delay of {:.0} ms before a lag of {:.0} ms would bring R2 from {:.3} to {:.3}; the model has none",
+                "{name}: a pure delay of {:.0} ms before a lag of {:.0} ms \
+                would bring R2 from {:.3} to {:.3}; the model has none",
                 1e3 * late.values[3],
                 1e3 * late.values[0],
                 score.r2,
