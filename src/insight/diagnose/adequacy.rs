@@ -1,9 +1,10 @@
 //! Whether what was found is enough: what structure is left, and which findings are in doubt beside it.
 
+use super::channels::NAMES;
 use super::finding::Finding;
 use super::oscillation;
 use super::select::Selection;
-use super::structure::{NAMES, Structure};
+use super::structure::Structure;
 use crate::base::stats::mean;
 use crate::insight::criteria::complete::{
     ABOUT_SHARE, ADEQUATE_RATIO, CHANGING_SHARE, LEFT_OF_EXPLAINED, LEFT_OF_NOISE, LINED_UP_SHARE, MEMORY_RATIO,

@@ -5,8 +5,8 @@ pub mod spectrum;
 pub mod windows;
 
 use super::Diagnosed;
-use super::predict::CHANNELS;
-use super::structure::{NAMES, Structure};
+use super::channels::{CHANNELS, NAMES};
+use super::structure::Structure;
 use crate::base::stats::mean;
 use crate::insight::criteria::shown::{FIGURE_FALL, FIGURE_SHARE};
 use crate::model::effects::Role;

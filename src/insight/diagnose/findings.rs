@@ -3,6 +3,7 @@
 
 use super::adequacy;
 use super::cause::MOVES;
+use super::channels::{PUSH, TURN};
 use super::drift;
 use super::finding::{Drift, Finding, Status, Value};
 use super::fitted::FittedSelection;
@@ -10,7 +11,6 @@ use super::gusts;
 use super::judge::{Judged, judge};
 use super::lost::Lost;
 use super::numbers::span;
-use super::predict::{PUSH, TURN};
 use super::select::Added;
 use super::structure::{PLACE, Structure};
 use crate::insight::criteria::material::MATERIAL_BIAS;

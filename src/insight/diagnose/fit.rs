@@ -1,7 +1,7 @@
 //! Fitting numbers of the model to all flights: Gauss-Newton on whitened residuals, with derivatives that are used more
 //! than once.
 
-use super::predict::CHANNELS;
+use super::channels::CHANNELS;
 use super::problem::{ChannelValues, Predictions, Problem};
 use super::whiten::Whitener;
 use crate::insight::estimate::gram::Grams;

@@ -1,14 +1,13 @@
 //! What the effects are worth on flight that was not used for fitting: the last flight where there are several, else
 //! the last 30 % of the time.
 
+use super::channels::{CHANNELS, NAMES};
 use super::finding::{Ahead, Gain};
 use super::fit::{self, FitPoint};
 use super::horizon;
 use super::numbers::{BEGIN, ModelNumber};
-use super::predict::CHANNELS;
 use super::problem::Problem;
 use super::select::{self, Selection};
-use super::structure::NAMES;
 use super::whiten::Whitener;
 use crate::base::stats::mean;
 use crate::insight::criteria::flown::{HELD_OUT_ROWS, WORTH_GAINING};

@@ -1,9 +1,9 @@
 //! Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both
 //! horizontal axes. They have no mean, and show in the variance.
 
+use super::channels::FORCE;
 use super::finding::{Finding, Value};
 use super::oscillation;
-use super::predict::FORCE;
 use super::problem::Problem;
 use super::record::BIN_S;
 use super::select::Selection;

@@ -1,16 +1,15 @@
 //! From the fit to findings: evidence, replication, size and what is left.
 
+use super::channels::{CHANNELS, NAMES, kind};
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
 use super::impact::impact;
 use super::numbers::span;
-use super::predict::{CHANNELS, kind};
 use super::problem::ChannelValues;
 use super::replication::stretches;
 use super::select::Added;
 use super::shown::parameters;
 use super::size::{is_bounded, is_material};
-use super::structure::NAMES;
 use crate::base::stats::mean;
 use crate::insight::criteria::evident::EXPLAINS_ANYTHING;
 use crate::insight::criteria::replicated::AGREEING_STRETCHES;

@@ -1,8 +1,8 @@
 //! Lost commands: their mean is that of a delay, and their variance that of nothing else. Large stick movements are
 //! looked at one by one: of each, how much of the error is there that its loss would leave.
 
+use super::channels::RATE;
 use super::numbers::TAU;
-use super::predict::RATE;
 use super::problem::Problem;
 use super::select::Selection;
 use crate::base::stats::{NORMAL_95, robust_sd};

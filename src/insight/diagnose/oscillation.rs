@@ -2,7 +2,7 @@
 //! moment tells that, because a swing remembers; but half a period later it has the other sign, and after a whole one
 //! its own again, which gusts and wrong drag never have.
 
-use super::predict::FORCE;
+use super::channels::FORCE;
 use super::problem::{ChannelValues, Problem, ResidualRow};
 use super::record::BIN_S;
 use crate::insight::criteria::replicated::{OSCILLATION_AWAY, OSCILLATION_BACK, OSCILLATION_LASTS};

@@ -1,8 +1,8 @@
 //! Whether what is left of the horizontal force belongs to places in the world: a fan, the lee of a building. No signal
 //! of the vehicle tells that, because the same place pushes another way when the vehicle has turned.
 
+use super::channels::FORCE;
 use super::folds::fold;
-use super::predict::FORCE;
 use super::problem::{ChannelValues, Problem};
 use crate::insight::criteria::complete::{PLACE_ROWS, PLACE_SHARE};
 use std::collections::HashMap;

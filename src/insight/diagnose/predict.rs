@@ -1,6 +1,7 @@
 //! What the model says the sensors of a flight should have read: the same stages as the simulator's, driven by the log.
 
 use super::actuator_response::{ActuatorResponse, actuator_response, body_rates, supplied};
+use super::channels::{CHANNELS, TURN, VOLTAGE};
 use super::kinematics::{self, lagged, slopes};
 use super::model::Model;
 use super::numbers::BEGIN;
@@ -8,33 +9,14 @@ use super::record::FlightRecord;
 use crate::base::lane::{build, fused};
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::period;
-use crate::model::attitude::{compose, dot, in_world, rotation_vector};
+use crate::model::attitude::dot;
 use crate::model::dynamics::battery::discharged;
 use crate::model::dynamics::extended::{self, Extended, ForceInputs};
-use crate::model::effects::{self, Card, Quantities, Quantity, ResidualChannel, Role, Sensed};
+use crate::model::effects::{self, Card, Quantities, Quantity, Role, Sensed};
 use std::sync::Arc;
 
 /// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
 const VOLTAGE_HZ: f64 = 0.5;
-
-/// Channels of the residual: rates, specific force, turns and pushes along x, y, z, and the voltage.
-pub const CHANNELS: usize = 13;
-pub const RATE: usize = 0;
-pub const FORCE: usize = 3;
-pub const TURN: usize = 6;
-pub const PUSH: usize = 9;
-pub const VOLTAGE: usize = 12;
-
-/// What a channel compares.
-pub fn kind(channel: usize) -> ResidualChannel {
-    [
-        ResidualChannel::Rate,
-        ResidualChannel::Force,
-        ResidualChannel::Turn,
-        ResidualChannel::Push,
-        ResidualChannel::Voltage,
-    ][channel / 3]
-}
 
 /// One flight, predicted; every stage is kept and shared, so that a number late in the chain is cheap to change.
 #[derive(Clone, Debug, Default)]
@@ -229,27 +211,4 @@ impl Predicted {
         }
         out
     }
-}
-
-/// What was measured, in the layout of [`Predicted::channels`].
-pub fn measured(record: &FlightRecord, gravity: f64) -> [Vec<f64>; CHANNELS] {
-    let mut out: [Vec<f64>; CHANNELS] = Default::default();
-    for (c, channel) in out.iter_mut().enumerate().take(6) {
-        let mean = |&[from, to]: &[usize; 2]| (from..to).map(|i| record.imu[c][i]).sum::<f64>() / (to - from) as f64;
-        *channel = record.bins.iter().map(mean).collect();
-    }
-    for &[from, to] in &record.windows {
-        let [w, a, b, c] = record.attitude[from];
-        let turn = rotation_vector(compose([w, -a, -b, -c], record.attitude[to]));
-        let velocity = |i: usize| in_world(&record.axes[i], std::array::from_fn(|k| record.velocity[k][i]));
-        let (v0, v1) = (velocity(from), velocity(to));
-        let mut gained: [f64; 3] = std::array::from_fn(|k| v1[k] - v0[k]);
-        gained[2] += gravity * (record.time[to] - record.time[from]);
-        for k in 0..3 {
-            out[TURN + k].push(turn[k]);
-            out[PUSH + k].push((0..3).map(|j| record.axes[from][k][j] * gained[j]).sum());
-        }
-    }
-    out[VOLTAGE] = record.volts.iter().map(|(_, v)| *v).collect();
-    out
 }

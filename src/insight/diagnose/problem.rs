@@ -1,7 +1,9 @@
 //! All flights as rows of residuals by channel, and their derivatives by any number of the model.
 
+use super::channels::CHANNELS;
+use super::measured::measured;
 use super::model::Model;
-use super::predict::{CHANNELS, Predicted, measured};
+use super::predict::Predicted;
 use super::record::FlightRecord;
 use crate::insight::estimate::gram::Stretch;
 use rayon::prelude::*;

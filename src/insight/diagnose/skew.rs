@@ -1,7 +1,7 @@
 //! Whether the clocks of commands and sensors run apart: the offset between simulated and measured rates, followed
 //! through the flight. A fit would not find it, because after a minute the two have nothing in common any more.
 
-use super::predict::RATE;
+use super::channels::RATE;
 use super::problem::{ChannelValues, Predictions, Problem};
 use super::record::BIN_S;
 use crate::base::stats::median;

@@ -1,9 +1,10 @@
 //! Is anything left? What of a residual an additive model of many signals predicts on stretches of time that it has not
 //! seen, with what that lines up with; and how much of it its own past predicts.
 
+use super::channels::{FORCE, NAMES, RATE, VOLTAGE};
 use super::folds::{FOLDS, fold};
-use super::predict::{CHANNELS, FORCE, RATE, VOLTAGE};
 use super::problem::{ChannelValues, Predictions, Problem};
+use super::signals::signals;
 use crate::base::stats::quantile;
 use crate::insight::criteria::complete::VARIANCE_SHARE;
 use crate::insight::criteria::flown::STRUCTURE_ROWS;
@@ -47,23 +48,6 @@ pub struct Structure {
     pub variance_along: Option<&'static str>,
     pub variance_ratio: f64,
 }
-
-/// Names and units of all channels.
-pub const NAMES: [(&str, &str); CHANNELS] = [
-    ("roll rate", "rad/s"),
-    ("pitch rate", "rad/s"),
-    ("yaw rate", "rad/s"),
-    ("specific force x", "m/s2"),
-    ("specific force y", "m/s2"),
-    ("specific force z", "m/s2"),
-    ("turn x", "rad"),
-    ("turn y", "rad"),
-    ("turn z", "rad"),
-    ("push x", "m/s"),
-    ("push y", "m/s"),
-    ("push z", "m/s"),
-    ("voltage", "V"),
-];
 
 /// The residuals of channels of rates, forces and voltage, searched for structure.
 pub fn search(problem: &Problem, state: &Predictions, residual: &ChannelValues) -> Vec<Structure> {
@@ -195,51 +179,6 @@ fn explained(features: &[&Feature], y: &[f64], fold: &[u32]) -> f64 {
 fn features(problem: &Problem, state: &Predictions, c: usize) -> Vec<Feature> {
     let all = signals(problem, state, c);
     all.into_iter().filter_map(|(name, _, values)| Feature::new(name, &values)).collect()
-}
-
-/// Signals at the rows of channel `c`, with their names and units.
-pub fn signals(problem: &Problem, state: &Predictions, c: usize) -> Vec<(&'static str, &'static str, Vec<f64>)> {
-    let rows = &problem.rows[c];
-    let at = |f: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
-        rows.iter().map(|row| f(row.flight as usize, row.sample as usize)).collect()
-    };
-    let records = &problem.records;
-    let u = |f: usize, i: usize| state[f].thrust(i);
-    let s = move |f: usize, i: usize| 0.5 + 0.5 * u(f, i);
-    let before = |f: usize, i: usize| u(f, i) - u(f, i.saturating_sub(8));
-    let v = |k: usize| move |f: usize, i: usize| records[f].velocity[k][i];
-    let over_ground = |f: usize, i: usize| v(0)(f, i).hypot(v(1)(f, i));
-    let w = |k: usize| move |f: usize, i: usize| state[f].rates[i][k];
-    let heading = |f: usize, i: usize| records[f].axes[i][0][1].atan2(records[f].axes[i][0][0]);
-    let begins = problem.clocks();
-    let clock = |f: usize, i: usize| begins[f] + records[f].time[i] - records[f].time[0];
-    let middle = 0.5 * rows.last().map_or(0.0, |row| clock(row.flight as usize, row.sample as usize));
-    // What a number that changed in flight leaves.
-    let moved = |k: usize| move |f: usize, i: usize| v(k)(f, i) * (clock(f, i) / middle.max(1.0) - 1.0);
-    vec![
-        ("throttle", "share", at(&s)),
-        ("change of throttle", "share", at(&before)),
-        ("voltage", "V", at(&|f, i| state[f].modelled_v[i])),
-        ("forward speed", "m/s", at(&v(0))),
-        ("sideways speed", "m/s", at(&v(1))),
-        ("vertical speed", "m/s", at(&v(2))),
-        ("speed across the rotors", "m/s", at(&over_ground)),
-        ("throttle times vertical speed", "m/s", at(&|f, i| s(f, i) * v(2)(f, i))),
-        ("speed across times vertical speed", "m2/s2", at(&|f, i| over_ground(f, i) * v(2)(f, i))),
-        ("height", "m", at(&|f, i| records[f].height[i].min(50.0))),
-        ("time", "s", at(&clock)),
-        ("forward speed times time", "m/s", at(&moved(0))),
-        ("sideways speed times time", "m/s", at(&moved(1))),
-        ("heading", "rad", at(&heading)),
-        ("roll rate", "rad/s", at(&w(0))),
-        ("pitch rate", "rad/s", at(&w(1))),
-        ("yaw rate", "rad/s", at(&w(2))),
-        ("yaw rate times forward speed", "m/s2", at(&|f, i| w(2)(f, i) * v(0)(f, i))),
-        ("yaw rate times sideways speed", "m/s2", at(&|f, i| w(2)(f, i) * v(1)(f, i))),
-        ("lag of the rates", "full sticks", at(&|f, i| state[f].lag(i))),
-        ("position east", "m", at(&|f, i| records[f].position[0][i])),
-        ("position north", "m", at(&|f, i| records[f].position[1][i])),
-    ]
 }
 
 impl Feature {

@@ -1,7 +1,7 @@
 //! Noise of each channel: an autoregressive model of what is left when everything that could explain it is taken off,
 //! and weights that outliers do not rule.
 
-use super::predict::CHANNELS;
+use super::channels::CHANNELS;
 use super::problem::{ChannelValues, ResidualRow};
 use crate::base::stats::robust_sd;
 use crate::insight::criteria::evident::MOST_MEMORY;

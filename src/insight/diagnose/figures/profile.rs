@@ -2,7 +2,7 @@
 
 use crate::base::stats::quantile;
 use crate::insight::diagnose::problem::{Predictions, Problem};
-use crate::insight::diagnose::structure;
+use crate::insight::diagnose::signals::signals;
 use std::collections::BTreeMap;
 
 const LEVELS: usize = 12;
@@ -25,7 +25,7 @@ pub struct ProfileLevel {
 
 /// Both residuals of channel `c` along the signal of this name.
 pub fn along(problem: &Problem, state: &Predictions, c: usize, name: &str, residuals: [&[f64]; 2]) -> Option<Profile> {
-    let (signal, unit, values) = structure::signals(problem, state, c).into_iter().find(|(n, _, _)| *n == name)?;
+    let (signal, unit, values) = signals(problem, state, c).into_iter().find(|(n, _, _)| *n == name)?;
     let known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let mut edges: Vec<f64> = (1..=LEVELS).map(|b| quantile(&known, b as f64 / LEVELS as f64)).collect();
     edges.dedup();

@@ -1,0 +1,28 @@
+//! What was measured, channel by channel.
+
+use super::channels::{CHANNELS, PUSH, TURN, VOLTAGE};
+use super::record::FlightRecord;
+use crate::model::attitude::{compose, in_world, rotation_vector};
+
+/// What was measured, in the layout of [`super::predict::Predicted::channels`].
+pub fn measured(record: &FlightRecord, gravity: f64) -> [Vec<f64>; CHANNELS] {
+    let mut out: [Vec<f64>; CHANNELS] = Default::default();
+    for (c, channel) in out.iter_mut().enumerate().take(6) {
+        let mean = |&[from, to]: &[usize; 2]| (from..to).map(|i| record.imu[c][i]).sum::<f64>() / (to - from) as f64;
+        *channel = record.bins.iter().map(mean).collect();
+    }
+    for &[from, to] in &record.windows {
+        let [w, a, b, c] = record.attitude[from];
+        let turn = rotation_vector(compose([w, -a, -b, -c], record.attitude[to]));
+        let velocity = |i: usize| in_world(&record.axes[i], std::array::from_fn(|k| record.velocity[k][i]));
+        let (v0, v1) = (velocity(from), velocity(to));
+        let mut gained: [f64; 3] = std::array::from_fn(|k| v1[k] - v0[k]);
+        gained[2] += gravity * (record.time[to] - record.time[from]);
+        for k in 0..3 {
+            out[TURN + k].push(turn[k]);
+            out[PUSH + k].push((0..3).map(|j| record.axes[from][k][j] * gained[j]).sum());
+        }
+    }
+    out[VOLTAGE] = record.volts.iter().map(|(_, v)| *v).collect();
+    out
+}
