@@ -2,7 +2,7 @@
 //!
 //! A file is read into tables of named columns ([`table`]), and a mapping ([`mapping`]) says what the columns mean.
 
-mod blackbox;
+pub mod blackbox;
 pub mod csv;
 pub mod fly;
 mod format;

@@ -1,35 +1,34 @@
-//! Betaflight blackbox files: a header in text, then packed frames; several flights may follow each other.
+//! Blackbox files of Betaflight and its relatives: a header in text, then packed frames; several flights may follow
+//! each other. Everything is read by what the header declares, whatever firmware it names.
 //!
-//! The table "main" has the fields of main frames under their own names, in rad/s, m/s2, V, A and, for throttle and motors, 0..1;
-//! other fields as they are. "gps" has those of GPS frames, and `east` and `north` of the first of them, in m.
+//! The table "main" has the fields of main frames under their own names, in rad/s, m/s2, V, A and, for throttle and
+//! motors, 0..1; other fields as they are. "gps" has those of GPS frames, and `east` and `north` of the first of them,
+//! in m. "slow" has flight modes and the like, "events" the number of each [`event::Event`] and what it says.
 
+mod bytes;
+pub mod decoded;
+pub mod decoder;
+pub mod definition;
+mod encoding;
+pub mod event;
 mod fields;
-mod header;
+mod flight;
+pub mod header;
+mod plane;
+mod predictor;
+mod scales;
+mod sequence;
+pub mod tally;
 
 use super::format::{Content, File, Format};
 use super::mapping::Mapping;
-use super::table::{LOG_TIME, Tables};
-use super::{Readable, VehicleRecord};
+use super::table::Tables;
 use crate::base::check::BadInput;
-use crate::base::document::nearest;
-use blackbox_log::frame::FrameDef;
-use blackbox_log::headers::Firmware;
-use blackbox_log::{Headers, ParserEvent};
-use fields::{Field, PLANE, Plane, Rows, STANDARD};
-use header::Header;
-use std::collections::{BTreeMap, BTreeSet};
+use flight::Flight;
+use std::collections::BTreeSet;
 
-/// A frame of more fields is not Betaflight's.
-const MOST_FIELDS: usize = 256;
-
-/// First line of every flight.
-const MARKER: &[u8] = b"H Product:Blackbox flight data recorder by Nicholas Sherlock\n";
-
-/// One of the flights of a file, decoded.
-struct Flight {
-    tables: Tables,
-    span_s: f64,
-}
+/// How every flight begins.
+const MARKER: &[u8] = b"H Product:Blackbox";
 
 /// Blackbox logs.
 pub struct Blackbox;
@@ -40,8 +39,7 @@ impl Format for Blackbox {
     }
 
     fn recognises(&self, file: &File) -> bool {
-        let begun = b"H Product:Blackbox";
-        file.start().windows(begun.len()).any(|window| window == begun) || file.ends(&[".bbl", ".bfl"])
+        file.start().windows(MARKER.len()).any(|window| window == MARKER) || file.ends(&[".bbl", ".bfl"])
     }
 
     fn mapping(&self, _: &File) -> Result<(&'static str, Option<String>), BadInput> {
@@ -58,8 +56,9 @@ impl Format for Blackbox {
     }
 }
 
-/// Reads `flight`, counted from 1, or else the longest: the (table, column) pairs that are `wanted`. Standard fields that
-/// were not recorded are NaN. Also remarks about what was chosen. Fails where there is no such flight, or no such field.
+/// Reads `flight`, counted from 1, or else the longest: the (table, column) pairs that are `wanted`. Standard fields
+/// that were not recorded are NaN. Also remarks about what was chosen, left out or is uncertain. Fails where there is
+/// no such flight, or no such field.
 pub fn tables(
     bytes: &[u8],
     name: &str,
@@ -68,19 +67,31 @@ pub fn tables(
 ) -> Result<(Tables, Vec<String>), BadInput> {
     let flights = split(bytes);
     let count = flights.len();
-    if count == 0 {
-        return Err(BadInput::new(name, "no flight", "a Betaflight blackbox file", "is it the right file?"));
+    let place = |index: usize| format!("{name}, flight {}", index + 1);
+    match flight {
+        _ if count == 0 => Err(BadInput::new(name, "no flight", "a Betaflight blackbox file", "is it the right file?")),
+        None => longest(&flights, |index, bytes| flight::read(bytes, &place(index), wanted)),
+        Some(number) => match number.checked_sub(1).and_then(|index| Some((index, flights.get(index)?))) {
+            Some((index, bytes)) => {
+                let flight = flight::read(bytes, &place(index), wanted)?;
+                Ok((flight.tables, flight.remarks))
+            }
+            None => Err(BadInput::new("--flight", number, &format!("1 to {count}, which {name} has"), "")),
+        },
     }
-    if let Some(flight) = flight {
-        if !(1..=count).contains(&flight) {
-            return Err(BadInput::new("--flight", flight, &format!("1 to {count}, which {name} has"), ""));
-        }
-        return Ok((read(flights[flight - 1], &format!("{name}, flight {flight}"), wanted)?.tables, Vec::new()));
-    }
+}
+
+/// The longest flight that can be read, and what was chosen from.
+fn longest(
+    flights: &[&[u8]],
+    read: impl Fn(usize, &[u8]) -> Result<Flight, BadInput>,
+) -> Result<(Tables, Vec<String>), BadInput> {
+    /// More would only hide the rest of the message.
+    const MOST: usize = 20;
     let mut best: Option<(usize, Flight)> = None;
     let (mut failed, mut spans) = (None, Vec::new());
-    for (index, bytes) in flights.into_iter().enumerate() {
-        match read(bytes, &format!("{name}, flight {}", index + 1), wanted) {
+    for (index, bytes) in flights.iter().enumerate() {
+        match read(index, bytes) {
             Ok(flight) => {
                 spans.push(format!("{:.1} s", flight.span_s));
                 if best.as_ref().is_none_or(|(_, best)| flight.span_s > best.span_s) {
@@ -93,109 +104,22 @@ pub fn tables(
             }
         }
     }
-    match (best, failed) {
-        (Some((_, flight)), _) if count == 1 => Ok((flight.tables, Vec::new())),
-        (Some((index, flight)), _) => {
-            let remark =
-                format!("flight {} of {count} ({}), the longest; --flight chooses", index + 1, spans.join(", "));
-            Ok((flight.tables, vec![remark]))
-        }
-        (None, Some(error)) => Err(error),
-        (None, None) => unreachable!("each flight is read or fails"),
+    let Some((index, flight)) = best else { return Err(failed.expect("each flight is read or fails")) };
+    let mut remarks = flight.remarks;
+    if flights.len() > 1 {
+        let more = if spans.len() > MOST { format!(", and {} more", spans.len() - MOST) } else { String::new() };
+        spans.truncate(MOST);
+        let (number, count) = (index + 1, flights.len());
+        let chosen = format!("flight {number} of {count} ({}{more}), the longest; --flight chooses", spans.join(", "));
+        remarks.insert(0, chosen);
     }
+    Ok((flight.tables, remarks))
 }
 
 /// The bytes of each flight.
-fn split(bytes: &[u8]) -> Vec<&[u8]> {
+pub fn split(bytes: &[u8]) -> Vec<&[u8]> {
     let windows = bytes.windows(MARKER.len()).enumerate();
     let mut starts: Vec<usize> = windows.filter(|(_, window)| *window == MARKER).map(|(start, _)| start).collect();
     starts.push(bytes.len());
     starts.windows(2).map(|ends| &bytes[ends[0]..ends[1]]).collect()
-}
-
-fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Result<Flight, BadInput> {
-    let bad = |found: String| BadInput::new(place, found, "a flight of Betaflight 4.2 to 4.5 or INAV 5 to 8", "");
-    let headers = match blackbox_log::File::new(bytes).parse(0) {
-        Some(Ok(headers)) => headers,
-        Some(Err(error)) => return Err(bad(error.to_string())),
-        None => return Err(bad("nothing".into())),
-    };
-    let inav = matches!(headers.firmware(), Firmware::Inav(_));
-    let header = Header::of(bytes, inav);
-    let main = select("main", headers.main_frame_def(), &header, place, wanted)?;
-    let gps = match headers.gps_frame_def() {
-        Some(def) => select("gps", def, &header, place, wanted)?,
-        None => Vec::new(),
-    };
-    Ok(decode(&headers, &main, &gps, &header, bytes))
-}
-
-/// The fields of a frame that are wanted.
-fn select<'data, D: FrameDef<'data>>(
-    table: &str,
-    def: &D,
-    header: &Header,
-    place: &str,
-    wanted: &BTreeSet<(&str, &str)>,
-) -> Result<Vec<Field>, BadInput> {
-    if def.len() > MOST_FIELDS {
-        let found = format!("{} fields in a frame", def.len());
-        return Err(BadInput::new(place, found, &format!("{MOST_FIELDS} at the most"), "is the file damaged?"));
-    }
-    let known: Vec<(&str, bool)> = def.iter().map(|field| (field.name, field.signed)).collect();
-    let mut fields = Vec::new();
-    for (_, column) in wanted.iter().filter(|(source, _)| *source == table) {
-        if *column == LOG_TIME || PLANE.contains(column) {
-            continue;
-        }
-        match known.iter().position(|(name, _)| name == column) {
-            Some(index) => fields.push(Field::new(column, index, known[index].1, header, place)?),
-            None if STANDARD.contains(column) => fields.push(Field::absent(column)),
-            None => {
-                let advice = match nearest(column, known.iter().map(|(name, _)| *name)) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => known.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "),
-                };
-                let found = format!("no field `{column}` in its {table} frames");
-                return Err(BadInput::new(place, found, "the fields that the mapping names", advice));
-            }
-        }
-    }
-    Ok(fields)
-}
-
-fn decode(headers: &Headers, main: &[Field], gps: &[Field], header: &Header, bytes: &[u8]) -> Flight {
-    let mut rows = Rows::new(main);
-    let mut fixes = Rows::new(gps);
-    let mut plane = headers.gps_frame_def().map(Plane::new);
-    let mut parser = headers.data_parser();
-    while let Some(event) = parser.next() {
-        match event {
-            ParserEvent::Main(frame) => rows.push(frame.time_raw(), main, &frame),
-            ParserEvent::Gps(frame) => {
-                fixes.push(frame.time_raw(), gps, &frame);
-                if let Some(plane) = &mut plane {
-                    plane.push(&frame);
-                }
-            }
-            ParserEvent::Event(_) | ParserEvent::Slow(_) => {}
-        }
-    }
-    // A flight that was switched off in the air has no end-of-log event. The library misses the event before padding.
-    let content = bytes.iter().rposition(|byte| ![0, 0xff].contains(byte)).map_or(0, |last| last + 1);
-    let readable = if parser.is_done() || bytes[..content].ends_with(b"End of log") {
-        Readable::Whole
-    } else {
-        let of = bytes.len() as u64;
-        Readable::Prefix { bytes: of, of, why: "the recording breaks off without its end-of-log event".into() }
-    };
-    let span_s = rows.span_s();
-    let mut tables = BTreeMap::from([("main".to_string(), rows.table(main))]);
-    if let Some(Plane { east, north, .. }) = plane {
-        let mut table = fixes.table(gps);
-        table.columns.extend(PLANE.map(String::from).into_iter().zip([east, north]));
-        tables.insert("gps".into(), table);
-    }
-    let vehicle = VehicleRecord { mass_kg: None, max_rate_rad_s: header.max_rates_rad_s() };
-    Flight { tables: Tables { tables, vehicle, readable }, span_s }
 }

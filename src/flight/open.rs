@@ -2,6 +2,7 @@
 
 use super::Log;
 use super::blackbox::Blackbox;
+use super::blackbox::decoded::Decoded;
 use super::csv::files::Csv;
 use super::format::{Content, File, Format};
 use super::mapping::Mapping;
@@ -11,7 +12,7 @@ use crate::base::check::BadInput;
 use std::path::Path;
 
 /// All formats. The first that recognises a file reads it, and CSV takes any text.
-const FORMATS: [&dyn Format; 4] = [&Mcap, &ULog, &Blackbox, &Csv];
+const FORMATS: [&dyn Format; 5] = [&Mcap, &ULog, &Blackbox, &Decoded, &Csv];
 
 /// What to read of a file, and how.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,5 +1,6 @@
 //! The parts of the library, each against numbers and rules known without it.
 
+mod blackbox;
 mod cards;
 mod config;
 mod dependence;

@@ -353,3 +353,42 @@ fn import_writes_a_new_file_or_nothing() {
     let ran = racer(folder.path(), &["import", "cut.ulg", "--out", "c.mcap"]);
     assert!(ran.code == 3 && ran.err.contains("damaged") && folder.path().join("c.mcap").exists(), "{}", ran.err);
 }
+
+/// What blackbox_decode makes of a blackbox is known by its columns; what it leaves open is said.
+#[test]
+fn csv_of_blackbox_decode_needs_no_mapping() {
+    let header = "loopIteration, time (us), setpoint[0], setpoint[1], setpoint[2], setpoint[3], vbatLatest (V), \
+                  gyroADC[0], gyroADC[1], gyroADC[2], accSmooth[0], accSmooth[1], accSmooth[2], motor[0], \
+                  flightModeFlags (flags)\n";
+    let rows = "0, 1000000,  90,   0,   0, 500, 16.5, 180,   0,   0,   0,   0, 2048, 158, ANGLE_MODE|X\n\
+                1, 1002000,  91,   0,   0, 510, 16.4, 180,   0,   0,   0,   0, 2048, 158, 0\n";
+    let opened = open_bytes("a.01.csv", [header, rows].concat().as_bytes(), Options::default()).unwrap();
+    let log = opened.log;
+    assert_eq!((opened.mapping.as_str(), log.imu.len(), log.start_ns), ("betaflight", 2, 1_000_000_000));
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    assert!(close(log.setpoint.rows[0][0], 90f64.to_radians()) && close(log.setpoint.rows[1][3], 0.51));
+    assert!(close(log.imu.rows[0][0], std::f64::consts::PI) && close(log.imu.rows[0][5], 9.80665));
+    assert!(close(log.battery.rows[0][0], 16.5) && log.battery.rows[0][1].is_nan(), "no current was logged");
+    for part in ["blackbox_decode", "2048 counts", "vbatLatest (V)", "deg/s"] {
+        assert!(opened.remarks.iter().any(|remark| remark.contains(part)), "{part}: {:?}", opened.remarks);
+    }
+}
+
+/// Other firmware is read by what its header declares, damage within is counted, and both are said.
+#[test]
+fn blackbox_of_other_firmware_and_with_damage() {
+    let file = |firmware: &str, frames: &[u8]| {
+        let text = String::from_utf8_lossy(&blackbox(b"")).replace("Betaflight 4.3.1", firmware);
+        [text.as_bytes(), frames].concat()
+    };
+    let opened = open_bytes("a.bbl", &file("EmuFlight 0.4.1", FRAMES), Options::default()).unwrap();
+    assert!(opened.log.setpoint.len() == 2 && opened.remarks[0].contains("EmuFlight"), "{:?}", opened.remarks);
+    let newest = open_bytes("a.bbl", &file("Betaflight 2026.6.0", FRAMES), Options::default()).unwrap();
+    assert!(newest.log.setpoint.len() == 2 && newest.remarks.is_empty(), "{:?}", newest.remarks);
+
+    // Two bytes that are no frame between the first frame and the end.
+    let damaged = [&FRAMES[..9], &[1, 2], &FRAMES[..9], &FRAMES[FRAMES.len() - 13..]].concat();
+    let opened = open_bytes("a.bbl", &file("Betaflight 4.3.1", &damaged), Options::default()).unwrap();
+    assert_eq!(opened.log.readable, Readable::Whole);
+    assert!(opened.remarks[0].contains("11 bytes") && opened.remarks[0].contains("1 frames"), "{:?}", opened.remarks);
+}

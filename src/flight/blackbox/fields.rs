@@ -1,71 +1,73 @@
 //! Fields of blackbox frames in physical units.
 
+use super::definition::Definition;
 use super::header::Header;
 use crate::base::check::BadInput;
 use crate::flight::table::{LOG_TIME, Table};
-use blackbox_log::frame::{Frame, FrameDef, GpsFrame, GpsFrameDef};
 use std::collections::BTreeMap;
 
-/// Fields that a flight may have been recorded without.
-pub const STANDARD: [&str; 16] = [
-    "setpoint[0]",
-    "setpoint[1]",
-    "setpoint[2]",
-    "setpoint[3]",
-    "gyroADC[0]",
-    "gyroADC[1]",
-    "gyroADC[2]",
-    "accSmooth[0]",
-    "accSmooth[1]",
-    "accSmooth[2]",
-    "motor[0]",
-    "motor[1]",
-    "motor[2]",
-    "motor[3]",
-    "vbatLatest",
-    "amperageLatest",
-];
+/// Fields that a flight may have been recorded without, and how many of each.
+const STANDARD: [(&str, usize); 5] = [("setpoint", 4), ("gyroADC", 3), ("accSmooth", 3), ("motor", 4), ("eRPM", 4)];
+const STANDARD_SINGLE: [&str; 2] = ["vbatLatest", "amperageLatest"];
 
 /// Columns of the table "gps" beside its fields: metres from the first fix.
 pub const PLANE: [&str; 2] = ["east", "north"];
+
+/// Names of the fields that a flight may have been recorded without.
+pub fn standard() -> impl Iterator<Item = String> {
+    let numbered = |(of, count): (&'static str, usize)| (0..count).map(move |i| format!("{of}[{i}]"));
+    STANDARD_SINGLE.into_iter().map(String::from).chain(STANDARD.into_iter().flat_map(numbered))
+}
+
+/// What INAV calls a field of Betaflight's with the same meaning and unit.
+pub fn of_inav(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "setpoint[0]" => "axisRate[0]",
+        "setpoint[1]" => "axisRate[1]",
+        "setpoint[2]" => "axisRate[2]",
+        "vbatLatest" => "vbat",
+        "amperageLatest" => "amperage",
+        _ => return None,
+    })
+}
 
 /// A field that is read: scale (x - zero), where x is what was recorded.
 pub struct Field {
     name: String,
     /// Its place in the frame; `None` where it was not recorded.
     index: Option<usize>,
-    signed: bool,
     zero: f64,
     scale: f64,
 }
 
 impl Field {
     pub fn absent(name: &str) -> Self {
-        Self { name: name.into(), index: None, signed: false, zero: 0.0, scale: 1.0 }
+        Self { name: name.into(), index: None, zero: 0.0, scale: 1.0 }
     }
 
     /// Fails where the header lacks the scale that the field needs.
-    pub fn new(name: &str, index: usize, signed: bool, header: &Header, place: &str) -> Result<Self, BadInput> {
+    pub fn new(name: &str, index: usize, header: &Header, place: &str) -> Result<Self, BadInput> {
         let (zero, scale) = match name.split('[').next().unwrap_or(name) {
             "setpoint" if name == "setpoint[3]" => (0.0, 1e-3),
             "setpoint" => (0.0, 1f64.to_radians()),
             "gyroADC" | "gyroUnfilt" => (0.0, header.gyro_scale_rad_s(place)?),
             "accSmooth" => (0.0, header.acceleration_scale_m_s2(place)?),
-            "vbatLatest" | "amperageLatest" => (0.0, 1e-2),
+            "vbatLatest" => (0.0, header.voltage_scale_v()),
+            "amperageLatest" => (0.0, 1e-2),
             "motor" => header.motor_range(place).map(|[low, high]| (low, 1.0 / (high - low)))?,
+            "eRPM" => (0.0, header.rotor_speed_scale_rad_s(place)?),
             "GPS_coord" => (0.0, 1e-7),
             "GPS_speed" => (0.0, 1e-2),
             "GPS_ground_course" => (0.0, 0.1),
             "GPS_altitude" => (0.0, header.altitude_scale_m()),
             _ => (0.0, 1.0),
         };
-        Ok(Self { name: name.into(), index: Some(index), signed, zero, scale })
+        Ok(Self { name: name.into(), index: Some(index), zero, scale })
     }
 
-    fn value(&self, frame: &impl Frame) -> f64 {
-        let Some(raw) = self.index.and_then(|index| frame.get_raw(index)) else { return f64::NAN };
-        let x = if self.signed { f64::from(raw.cast_signed()) } else { f64::from(raw) };
-        self.scale * (x - self.zero)
+    fn value(&self, definition: &Definition, frame: &[i64]) -> f64 {
+        let Some(index) = self.index else { return f64::NAN };
+        self.scale * (definition.number(index, frame[index]) as f64 - self.zero)
     }
 }
 
@@ -76,14 +78,14 @@ pub struct Rows {
 }
 
 impl Rows {
-    pub fn new(fields: &[Field]) -> Self {
-        Self { time_s: Vec::new(), columns: vec![Vec::new(); fields.len()] }
+    pub fn new(columns: usize) -> Self {
+        Self { time_s: Vec::new(), columns: vec![Vec::new(); columns] }
     }
 
-    pub fn push(&mut self, time_us: u64, fields: &[Field], frame: &impl Frame) {
+    pub fn push(&mut self, time_us: i64, values: impl IntoIterator<Item = f64>) {
         self.time_s.push(time_us as f64 * 1e-6);
-        for (column, field) in self.columns.iter_mut().zip(fields) {
-            column.push(field.value(frame));
+        for (column, value) in self.columns.iter_mut().zip(values) {
+            column.push(value);
         }
     }
 
@@ -92,35 +94,31 @@ impl Rows {
         self.time_s.last().zip(self.time_s.first()).map_or(0.0, |(last, first)| last - first)
     }
 
-    pub fn table(self, fields: &[Field]) -> Table {
-        let mut columns: BTreeMap<_, _> = fields.iter().map(|field| field.name.clone()).zip(self.columns).collect();
+    pub fn table(self, names: impl IntoIterator<Item = String>) -> Table {
+        let mut columns: BTreeMap<_, _> = names.into_iter().zip(self.columns).collect();
         columns.insert(LOG_TIME.into(), self.time_s);
         Table { columns }
     }
 }
 
-/// Latitude and longitude of GPS frames, as metres east and north of the first fix.
-pub struct Plane {
-    index: Option<[usize; 2]>,
-    first: Option<[f64; 2]>,
-    pub east: Vec<f64>,
-    pub north: Vec<f64>,
+/// The fields of one kind of frame, and their rows.
+pub struct Recorded<'a> {
+    definition: &'a Definition,
+    fields: Vec<Field>,
+    pub rows: Rows,
 }
 
-impl Plane {
-    pub fn new(def: &GpsFrameDef) -> Self {
-        let place = |name| def.iter().position(|field| field.name == name);
-        let index = place("GPS_coord[0]").zip(place("GPS_coord[1]")).map(|(latitude, longitude)| [latitude, longitude]);
-        Self { index, first: None, east: Vec::new(), north: Vec::new() }
+impl<'a> Recorded<'a> {
+    pub fn new(definition: &'a Definition, fields: Vec<Field>) -> Self {
+        let rows = Rows::new(fields.len());
+        Self { definition, fields, rows }
     }
 
-    pub fn push(&mut self, frame: &GpsFrame) {
-        let degrees = |index| frame.get_raw(index).map_or(f64::NAN, |raw| 1e-7 * f64::from(raw.cast_signed()));
-        let [latitude, longitude] = self.index.map_or([f64::NAN; 2], |index| index.map(degrees));
-        let [latitude_0, longitude_0] = *self.first.get_or_insert([latitude, longitude]);
-        /// Metres a degree of latitude, on a sphere.
-        const METRES: f64 = 6_371_008.8 * std::f64::consts::PI / 180.0;
-        self.east.push(METRES * (longitude - longitude_0) * latitude_0.to_radians().cos());
-        self.north.push(METRES * (latitude - latitude_0));
+    pub fn push(&mut self, time_us: i64, frame: &[i64]) {
+        self.rows.push(time_us, self.fields.iter().map(|field| field.value(self.definition, frame)));
+    }
+
+    pub fn table(self) -> Table {
+        self.rows.table(self.fields.into_iter().map(|field| field.name))
     }
 }

@@ -1,115 +1,89 @@
-//! The text header of a flight: scales, and what a full stick asks for.
+//! The text header of a flight: lines `H name:value`, which declare what the frames behind them hold.
 
-use crate::base::check::BadInput;
 use std::collections::HashMap;
 
-/// `H name:value` lines.
 pub struct Header<'a> {
     values: HashMap<&'a str, &'a str>,
-    inav: bool,
+    /// Where the frames begin.
+    pub end: usize,
+    /// Lines that are damaged, and were left out.
+    pub damaged: usize,
 }
 
 impl<'a> Header<'a> {
     /// Of a flight that starts where `bytes` do.
-    pub fn of(bytes: &'a [u8], inav: bool) -> Self {
-        let lines = bytes.split(|&byte| byte == b'\n').map_while(|line| line.strip_prefix(b"H "));
-        let pairs = lines.filter_map(|line| std::str::from_utf8(line).ok()?.split_once(':'));
-        Self { values: pairs.collect(), inav }
-    }
-
-    fn numbers<const N: usize>(&self, key: &str) -> Option<[f64; N]> {
-        let mut numbers = self.values.get(key)?.split(',').map(|number| number.trim().parse().ok());
-        let mut read = [0.0; N];
-        for value in &mut read {
-            *value = numbers.next()??;
+    pub fn of(bytes: &'a [u8]) -> Self {
+        let mut header = Self { values: HashMap::new(), end: 0, damaged: 0 };
+        while let Some(length) = bytes[header.end..].iter().position(|&byte| byte == b'\n') {
+            let [here, next] = [header.end, header.end + length + 1];
+            match pair(&bytes[here..next - 1]) {
+                Some((name, value)) => _ = header.values.insert(name, value),
+                // Frames would hardly be followed by a line of the header.
+                None if first_pair(&bytes[next..]).is_some() => header.damaged += 1,
+                None => break,
+            }
+            header.end = next;
         }
-        Some(read)
+        header
     }
 
-    /// rad/s a count.
-    pub fn gyro_scale_rad_s(&self, place: &str) -> Result<f64, BadInput> {
-        let text = self.values.get("gyro_scale").or_else(|| self.values.get("gyro.scale")).copied();
-        let bits = text.and_then(|text| u32::from_str_radix(text.strip_prefix("0x")?, 16).ok());
-        // Degrees a second, the bits of a float.
-        self.positive("gyro_scale", bits.map(|bits| f64::from(f32::from_bits(bits)).to_radians()), place)
+    pub fn text(&self, name: &str) -> Option<&'a str> {
+        self.values.get(name).copied()
     }
 
-    /// m/s2 a count.
-    pub fn acceleration_scale_m_s2(&self, place: &str) -> Result<f64, BadInput> {
-        let one_g = self.numbers::<1>("acc_1G").filter(|[one_g]| *one_g > 0.0);
-        self.positive("acc_1G", one_g.map(|[one_g]| 9.80665 / one_g), place)
+    /// What commas separate; nothing where there is no such line.
+    pub fn list(&self, name: &str) -> Vec<&'a str> {
+        self.text(name).filter(|text| !text.is_empty()).map(|text| text.split(',').collect()).unwrap_or_default()
     }
 
-    /// Outputs that stop a motor and that drive it fully.
-    pub fn motor_range(&self, place: &str) -> Result<[f64; 2], BadInput> {
-        let throttle = || Some([self.numbers::<1>("minthrottle")?[0], self.numbers::<1>("maxthrottle")?[0]]);
-        let range = self.numbers("motorOutput").or_else(throttle).unwrap_or([f64::NAN; 2]);
-        self.positive("motorOutput", Some(range[1] - range[0]), place)?;
-        Ok(range)
+    /// The first number of a line.
+    pub fn integer(&self, name: &str) -> Option<i64> {
+        self.list(name).first()?.trim().parse::<i32>().ok().map(i64::from)
     }
 
-    /// m a count. Betaflight logs decimetres, INAV metres.
-    pub fn altitude_scale_m(&self) -> f64 {
-        if self.inav { 1.0 } else { 0.1 }
+    /// Such as `Betaflight`; empty where it is not said.
+    pub fn firmware(&self) -> &'a str {
+        let revision = self.text("Firmware revision").unwrap_or_default();
+        revision.split(' ').next().unwrap_or_default()
     }
 
-    fn positive(&self, key: &str, value: Option<f64>, place: &str) -> Result<f64, BadInput> {
-        value.filter(|value| value.is_finite() && *value > 0.0).ok_or_else(|| {
-            let found = self.values.get(key).map_or("nothing".into(), |value| format!("`{value}`"));
-            BadInput::new(format!("{place}, header `{key}`"), found, "the scale of a recorded field", "")
-        })
+    pub fn inav(&self) -> bool {
+        self.firmware() == "INAV"
     }
 
-    /// Rates that full sticks ask for, roll, pitch, yaw; `None` for rate types whose formula we do not know.
-    pub fn max_rates_rad_s(&self) -> Option<[f64; 3]> {
-        if self.inav {
-            return None;
-        }
-        let [kind] = self.numbers::<1>("rates_type")?;
-        let (rc, rates): ([f64; 3], [f64; 3]) = (self.numbers("rc_rates")?, self.numbers("rates")?);
-        let limits = self.numbers("rate_limits").unwrap_or([1998.0; 3]);
-        let mut full = [0.0; 3];
-        for (axis, full) in full.iter_mut().enumerate() {
-            let deg_s = match kind {
-                // Betaflight: the super rate is a share, the rc rate grows faster above 2.
-                0.0 if rates[axis] < 100.0 => {
-                    let rc = rc[axis] / 100.0;
-                    let rc = if rc > 2.0 { rc + 14.54 * (rc - 2.0) } else { rc };
-                    200.0 * rc / (1.0 - rates[axis] / 100.0)
-                }
-                // Actual, quick: tens of degrees a second.
-                3.0 => 10.0 * rates[axis].max(rc[axis]),
-                4.0 => 10.0 * rates[axis],
-                _ => return None,
-            };
-            *full = deg_s.min(limits[axis]).to_radians();
-        }
-        full.iter().all(|rate| rate.is_finite() && *rate > 0.0).then_some(full)
+    /// What stops a motor.
+    pub fn least_motor_output(&self) -> Option<i64> {
+        self.integer("motorOutput").or_else(|| self.integer("minthrottle"))
     }
+}
+
+fn first_pair(bytes: &[u8]) -> Option<(&str, &str)> {
+    pair(bytes.split(|&byte| byte == b'\n').next()?)
+}
+
+/// Name and value of a line without its end.
+fn pair(line: &[u8]) -> Option<(&str, &str)> {
+    /// No firmware comes near.
+    const MOST_BYTES: usize = 4096;
+    let text = std::str::from_utf8(line.get(..line.len().min(MOST_BYTES + 1))?.strip_prefix(b"H ")?).ok()?;
+    let text = text.strip_suffix('\r').unwrap_or(text);
+    if line.len() > MOST_BYTES || text.chars().any(char::is_control) { None } else { text.split_once(':') }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn rates(kind: u8, rc: u8, rates: u8) -> Option<[f64; 3]> {
-        let text = format!("H rates_type:{kind}\nH rc_rates:{rc},{rc},{rc}\nH rates:{rates},{rates},{rates}\nI");
-        Some(Header::of(text.as_bytes(), false).max_rates_rad_s()?.map(|rate| rate.to_degrees().round()))
-    }
-
     #[test]
-    fn full_stick() {
-        assert_eq!(rates(0, 100, 70), Some([667.0; 3]));
-        assert_eq!(rates(3, 10, 70), Some([700.0; 3]));
-        assert_eq!(rates(0, 100, 100), None, "no finite rate");
-        assert_eq!(rates(2, 100, 70), None, "KISS");
-    }
-
-    #[test]
-    fn scales_that_are_missing_are_named() {
-        let header = Header::of(b"H acc_1G:0\nH gyro_scale:0x3f800000\nI", false);
-        assert_eq!(header.gyro_scale_rad_s("f").unwrap(), 1f64.to_radians());
-        assert!(header.acceleration_scale_m_s2("f").unwrap_err().to_string().contains("acc_1G"));
-        assert!(header.motor_range("f").unwrap_err().to_string().contains("motorOutput"));
+    fn lines_lists_and_where_frames_begin() {
+        let bytes =
+            b"H Product:Blackbox\nH a:1,-2,x\nH Firmware revision:INAV 7.1.2 (abc) X\n? b:3\nH b:4\nI\n\nH c:5\n";
+        let header = Header::of(bytes);
+        assert_eq!((header.list("a"), header.integer("a"), header.list("c").len()), (vec!["1", "-2", "x"], Some(1), 0));
+        assert_eq!(
+            (header.inav(), header.integer("b"), header.damaged, &bytes[header.end..][..1]),
+            (true, Some(4), 1, &b"I"[..])
+        );
+        assert_eq!(Header::of(b"").end, 0);
     }
 }
