@@ -15,7 +15,7 @@ import collections
 import csv
 import hashlib
 import pathlib
-import shutil
+import re
 import subprocess
 import sys
 import tempfile
@@ -60,19 +60,22 @@ def compare(ours, theirs, skip=()):
 
 
 def flights(log, options, folder):
-    copy = folder / "log.bfl"
-    shutil.copyfile(log, copy)
+    content = pathlib.Path(log).read_bytes()
+    starts = [found.start() for found in re.finditer(b"H Product:Blackbox", content)] + [len(content)]
     units = [word for unit in RAW for word in (f"--unit-{unit}", "raw")]
     printed = subprocess.run([options.racer, str(log), str(folder)], check=True, capture_output=True, text=True)
-    digest = hashlib.sha256(pathlib.Path(log).read_bytes()).hexdigest()[:16]
     for line in printed.stdout.splitlines():
         flight, firmware, frames, events = line.split("\t")
-        subprocess.run([options.decoder, *units, "--index", flight, str(copy)], check=False, capture_output=True)
-        theirs = table(folder / f"log.{int(flight):02}.csv")
+        # Each in a file of its own: blackbox_decode finds no more than 31 in one.
+        alone = folder / f"{flight}.bfl"
+        alone.write_bytes(content[starts[int(flight) - 1]:starts[int(flight)]])
+        subprocess.run([options.decoder, *units, str(alone)], check=False, capture_output=True)
+        theirs = table(folder / f"{flight}.01.csv")
         if int(frames) == 0 and not theirs[1]:
             continue
         main = compare(table(folder / f"{flight}.main.csv"), theirs)
-        gps = compare(table(folder / f"{flight}.gps.csv"), table(folder / f"log.{int(flight):02}.gps.csv"))
+        gps = compare(table(folder / f"{flight}.gps.csv"), table(folder / f"{flight}.01.gps.csv"))
+        digest = hashlib.sha256(content).hexdigest()[:16]
         row = [firmware, digest, flight, main["rows"], main["fields"], main["cells"], main["differing"],
                main["missing"], main["more"], events, gps["rows"],
                gps["differing"] + gps["fields"] * (gps["missing"] + gps["more"])]

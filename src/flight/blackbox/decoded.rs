@@ -1,9 +1,12 @@
 //! The CSV files that `blackbox_decode` writes, as the table "main" that the blackbox itself gives.
 
 use super::fields::standard;
+use crate::base::check::BadInput;
 use crate::flight::Readable;
+use crate::flight::csv::{self, files::Csv};
+use crate::flight::format::{Content, File, Format};
+use crate::flight::mapping::Mapping;
 use crate::flight::table::{LOG_TIME, Table, Tables};
-use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 const G_M_S2: f64 = 9.80665;
@@ -26,7 +29,7 @@ impl Format for Decoded {
     }
 
     fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
-        if mapping.sources().all(|source| source != "main") {
+        if !mapping.sources().contains("main") {
             // Somebody's own mapping, for its columns as they are.
             return Csv.tables(file, mapping);
         }
