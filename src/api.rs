@@ -1,4 +1,5 @@
-//! What the crate shows to those who use it as a library. Everything here is thin: the work is done on the floors below.
+//! What the crate shows to those who use it as a library. Everything here is thin: the work is done on the floors
+//! below.
 
 pub mod flight;
 pub mod insight;

@@ -29,8 +29,9 @@ const HELP: &str = "Figures are environment steps of 10 ms a second, with the de
   rollout      the environment flown by the stochastic policy, stored for learning
   training     rollout, advantages and all epochs of the update
 The peak is that of single-precision multiply-adds, each counted as two operations. Shares of it are those on all \
-threads: of physics and environment, every operation counts as if it were a multiply-add; of training, only the networks' \
-multiply-adds count; of rollout, both. A share does not depend on the machine's speed, so a loss shows in it.";
+threads: of physics and environment, every operation counts as if it were a multiply-add; of training, only the \
+networks' multiply-adds count; of rollout, both. A share does not depend on the machine's speed, so a loss shows in \
+it.";
 
 fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse() {

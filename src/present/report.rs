@@ -24,6 +24,13 @@ pub use page::digits;
 
 use crate::base::error::Error;
 
+/// A page, and its figures by the names of their files.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    pub page: String,
+    pub figures: Vec<(String, String)>,
+}
+
 /// The error of a drawing.
 pub fn drawing(error: impl std::fmt::Display) -> Error {
     Error::Draw(error.to_string())

@@ -2,9 +2,8 @@
 
 use super::commands::{self, Commands};
 use super::figures::{lap_title, training};
-use super::folder::Drawn;
 use super::run::{Figure, page};
-use super::{lap, spread as spreading};
+use super::{Drawn, lap, spread as spreading};
 use crate::base::error::Result;
 use crate::base::lane::Level;
 use crate::base::threads;

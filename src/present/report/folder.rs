@@ -1,19 +1,12 @@
 //! The report of a folder, whatever it holds: a run or a study.
 
-use super::{flown, study};
+use super::{Drawn, flown, study};
 use crate::base::check::BadInput;
 use crate::base::error::Result;
 use crate::present::run::metrics::METRICS;
 use crate::present::study::curves;
 use crate::present::study::folder::{Folder, PLAN};
 use std::path::Path;
-
-/// A page, and its figures by the names of their files.
-#[derive(Clone, Debug)]
-pub struct Drawn {
-    pub page: String,
-    pub figures: Vec<(String, String)>,
-}
 
 /// What `folder` holds, drawn; of a run with the commands of the run in `beside` next to its own.
 pub fn draw(folder: &Path, beside: Option<&Path>) -> Result<Drawn> {
