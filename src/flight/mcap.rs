@@ -68,11 +68,13 @@ pub struct Topic {
 /// The topics for which `wanted` is true, each as a table with the time of logging in `@log_time`.
 ///
 /// A file that breaks off gives what came before. An error if the bytes are no MCAP file, or a wanted topic cannot be decoded.
+#[cfg(feature = "internals")]
 pub fn tables(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Result<Tables, BadInput> {
     Ok(read(bytes, wanted)?.0)
 }
 
 /// The topics of a file, by name, as far as it can be read. An error if the bytes are no MCAP file.
+#[cfg(feature = "internals")]
 pub fn topics(bytes: &[u8]) -> Result<Vec<Topic>, BadInput> {
     Ok(read(bytes, &|_| false)?.1)
 }

@@ -7,8 +7,6 @@ use nalgebra::{DMatrix, DVector};
 /// What one group of columns adds to another, judged by the stretches of time that agree.
 #[derive(Clone, Debug)]
 pub struct ScoreTest {
-    /// Expected change of the group's parameters.
-    pub change: DVector<f64>,
     /// How much the whitened squares would fall.
     pub gain: f64,
     /// U' (sum U_b U_b')^-1 U: for one parameter the number of stretches that agree.
@@ -16,8 +14,6 @@ pub struct ScoreTest {
     /// Information about the group that the rest leaves, by parameter, and what it was before.
     pub information: DVector<f64>,
     pub raw: DVector<f64>,
-    /// What the rest would have to become to take the group's place: (J'J)^-1 J'S.
-    pub absorbed: DMatrix<f64>,
     /// Information and score of each stretch of time.
     pub blocks: Vec<(DMatrix<f64>, DMatrix<f64>)>,
 }
@@ -27,6 +23,7 @@ pub fn score(grams: &Grams, rest: &[usize], group: &[usize], residual: usize, pr
     let g = &grams.sum;
     let rest_prior: Vec<f64> = rest.iter().map(|&i| prior[i]).collect();
     let inner = inverse(&Grams::pick(g, rest, rest), &rest_prior)?;
+    // What the rest would have to become to take the group's place: (J'J)^-1 J'S.
     let absorbed = &inner * Grams::pick(g, rest, group);
     let beta = &inner * Grams::pick(g, rest, &[residual]);
     let own = |m: &DMatrix<f64>| {
@@ -52,11 +49,9 @@ pub fn score(grams: &Grams, rest: &[usize], group: &[usize], residual: usize, pr
     let evidence = (u.transpose() * robust * &u)[(0, 0)];
     Some(ScoreTest {
         gain: (u.transpose() * &change)[(0, 0)],
-        change: change.column(0).into_owned(),
         evidence,
         information: information.diagonal(),
         raw: Grams::pick(g, group, group).diagonal(),
-        absorbed,
         blocks,
     })
 }
