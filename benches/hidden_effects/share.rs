@@ -33,12 +33,3 @@ impl Share {
         format!("{:>9}  {percent:>5.1} %  ({low:.1} to {high:.1})", format!("{}/{}", self.yes, self.of))
     }
 }
-
-/// Middle of the numbers, or the value that a share `at` of them lies below; NaN of none.
-pub fn quantile(mut numbers: Vec<f64>, at: f64) -> f64 {
-    numbers.sort_by(f64::total_cmp);
-    match numbers.len() {
-        0 => f64::NAN,
-        n => numbers[((at * (n - 1) as f64).round() as usize).min(n - 1)],
-    }
-}

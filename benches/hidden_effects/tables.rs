@@ -2,7 +2,8 @@
 
 use crate::case::Group;
 use crate::judge::{Judged, Scored};
-use crate::share::{Share, quantile};
+use crate::share::Share;
+use racer::base::stats::quantile;
 use std::collections::BTreeMap;
 
 pub fn print(all: &[Judged]) {
@@ -14,11 +15,11 @@ pub fn print(all: &[Judged]) {
     let gains = |j: &&Judged| !matches!(j.group, Group::Outside | Group::None | Group::Drift);
     let captured: Vec<f64> = all.iter().filter(gains).filter_map(|j| j.answer.as_ref().ok()?.captured).collect();
     if !captured.is_empty() {
-        let [median, low] = [0.5, 0.1].map(|at| 100.0 * quantile(captured.clone(), at));
+        let [median, low] = [0.5, 0.1].map(|at| 100.0 * quantile(&captured, at));
         println!("\ncaptured gain: median {median:.1} %, a tenth below {low:.1} % (of {})", captured.len());
     }
     let times: Vec<f64> = all.iter().map(|j| j.seconds).collect();
-    println!("run time: median {:.1} s, worst {:.1} s", quantile(times.clone(), 0.5), quantile(times, 1.0));
+    println!("run time: median {:.1} s, worst {:.1} s", quantile(&times, 0.5), quantile(&times, 1.0));
 }
 
 /// Each share over the logs that it is about.
@@ -108,7 +109,7 @@ fn parameters(all: &[Judged]) {
     let print = |name: &str, of: &[&Scored]| {
         let errors: Vec<f64> = of.iter().map(|one| 100.0 * one.error.abs()).collect();
         let inside = Share::count(of.iter().filter_map(|one| one.inside));
-        let [median, worst] = [0.5, 1.0].map(|at| quantile(errors.clone(), at));
+        let [median, worst] = [0.5, 1.0].map(|at| quantile(&errors, at));
         println!("{name:<34}{:>5}{median:>12.1}{worst:>12.1}  {}", of.len(), inside.text());
     };
     for (name, of) in &by_name {

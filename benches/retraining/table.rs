@@ -2,7 +2,8 @@
 
 use crate::program::Simulated;
 use crate::race::Raced;
-use crate::share::{Share, quantile};
+use crate::share::Share;
+use racer::base::stats::quantile;
 use std::collections::BTreeMap;
 
 pub const HEADER: &str = "effect                     size  seed  trained in  laps completed in truth, 95 % interval    \
@@ -23,7 +24,7 @@ impl Row {
     pub fn line(&self) -> String {
         let completed = Share::count(self.flights.iter().map(|flight| flight.lap_s.is_some()));
         let laps: Vec<f64> = self.flights.iter().filter_map(|flight| flight.lap_s).collect();
-        let lap = (!laps.is_empty()).then(|| quantile(laps, 0.5));
+        let lap = (!laps.is_empty()).then(|| quantile(&laps, 0.5));
         let simulated = self.simulated.map_or("-".into(), |simulated| {
             format!("{:.1} %  {} s", 100.0 * simulated.completion, time(simulated.lap_s))
         });
