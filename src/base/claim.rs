@@ -15,8 +15,8 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Claims `name` in the folder `at`, which is made if need be, and removes what a killed process has left of it. `None`
-    /// where a running process has it. Where the file system knows no locks, nobody has it.
+    /// Claims `name` in the folder `at`, which is made if need be, and removes what a killed process has left of it.
+    /// `None` where a running process has it. Where the file system knows no locks, nobody has it.
     pub fn take(at: &Path, name: &str) -> io::Result<Option<Self>> {
         fs::create_dir_all(at)?;
         let lock = at.join(format!("{name}.lock"));
@@ -56,8 +56,8 @@ impl Claim {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        // What remains of the work goes with `work`. A process that opened the file before it went away finds a lock, too,
-        // and then a folder that is finished.
+        // What remains of the work goes with `work`. A process that opened the file before it went away finds a lock,
+        // too, and then a folder that is finished.
         let _ = fs::remove_file(&self.lock);
     }
 }

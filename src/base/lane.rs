@@ -170,7 +170,8 @@ pub trait Single: Real {
 pub trait Lane: Real {
     /// The number in each lane.
     type Elem: Real<Mask = bool> + PartialOrd + Default + fmt::Debug;
-    /// Runs `work` with the tile that this CPU's registers hold. A call and not a constant, so that other tiles are never compiled.
+    /// Runs `work` with the tile that this CPU's registers hold. A call and not a constant, so that other tiles are
+    /// never compiled.
     fn tiled<T: Tiled>(work: T);
 
     fn splat(x: Self::Elem) -> Self;
@@ -306,8 +307,8 @@ pub enum Level {
     Avx512,
     /// Two 256-bit registers a block, fused multiply-add.
     Avx2,
-    /// Four 128-bit registers a block, which every x86-64 has; elsewhere what the compiler makes of a loop over 16 numbers.
-    /// Multiply-add is not fused.
+    /// Four 128-bit registers a block, which every x86-64 has; elsewhere what the compiler makes of a loop over 16
+    /// numbers. Multiply-add is not fused.
     Portable,
 }
 
@@ -372,8 +373,8 @@ pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
     }
 }
 
-/// Runs `work` on scalars where a fused multiply-add is one instruction, if this CPU has it; elsewhere it is a call of a function,
-/// with the same result.
+/// Runs `work` on scalars where a fused multiply-add is one instruction, if this CPU has it; elsewhere it is a call of
+/// a function, with the same result.
 pub fn fused<T>(work: impl FnOnce() -> T) -> T {
     #[cfg(target_arch = "x86_64")]
     if x86::has_avx2() {

@@ -71,8 +71,8 @@ impl Philox {
         self.words([B::splat(index), environments, B::splat(step), B::splat(stream as u32)])
     }
 
-    /// As [`Philox::block`] with seven rounds, the fewest that pass every test of randomness (Table 2 of the paper): for
-    /// noise of sensors, of which every step takes much.
+    /// As [`Philox::block`] with seven rounds, the fewest that pass every test of randomness (Table 2 of the paper):
+    /// for noise of sensors, of which every step takes much.
     #[inline(always)]
     pub fn noise<B: Bits>(&self, stream: Stream, environments: B, step: u32, index: u32) -> [B; 4] {
         self.rounds::<B, 7>([B::splat(index), environments, B::splat(step), B::splat(stream as u32)])
@@ -147,8 +147,8 @@ pub fn normals<L: Lane32>(a: L::Bits, b: L::Bits) -> (L, L) {
 /// Two standard normals a lane from the halves of one word, by 16 bits each: for sensor noise, which nobody can tell
 /// from finer at a third of the price. At most 4.9 in size.
 ///
-/// Box and Muller again, with polynomials (minimax fits) no finer than the numbers they take: the squared radius is off by
-/// at most 8e-6 of itself, sine and cosine by 7e-6.
+/// Box and Muller again, with polynomials (minimax fits) no finer than the numbers they take: the squared radius is off
+/// by at most 8e-6 of itself, sine and cosine by 7e-6.
 #[inline(always)]
 pub fn coarse_normals<L: Lane32>(a: L::Bits) -> (L, L) {
     let unit = L::of(1.0 / 65_536.0);

@@ -7,8 +7,8 @@ pub const ACTIONS: usize = 4;
 
 const HALF_LOG_TAU: f64 = 0.918_938_533_204_672_7;
 
-/// Draws `z = mean + exp(log_std) noise` and returns it with its log-probability. The density is that of z: the squashing
-/// changes the density of a by a factor that cancels in PPO's ratio.
+/// Draws `z = mean + exp(log_std) noise` and returns it with its log-probability. The density is that of z: the
+/// squashing changes the density of a by a factor that cancels in PPO's ratio.
 #[inline(always)]
 pub fn sample<R: Real>(mean: [R; ACTIONS], log_std: [R; ACTIONS], noise: [R; ACTIONS]) -> ([R; ACTIONS], R) {
     let z = build!(|k| log_std[k].exp().mul_add(noise[k], mean[k]));

@@ -107,7 +107,8 @@ pub struct MaxRates {
     pub yaw: f64,
 }
 
-/// Drag of an ellipsoid: half the density, times the coefficient, the area projected along the airflow and speed squared.
+/// Drag of an ellipsoid: half the density, times the coefficient, the area projected along the airflow and speed
+/// squared.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drag {

@@ -27,9 +27,9 @@ pub struct Pair {
     pub all_threads: f64,
 }
 
-/// Shares of what the machine could do if it did multiply-adds only. Physics and environment are counted in operations, for
-/// each of which a multiply-add could be done; rollout and training in the networks' multiply-adds, rollout with the
-/// environment's operations. A stage that falls behind its earlier share has lost something, whatever the machine.
+/// Shares of what the machine could do if it did multiply-adds only. Physics and environment are counted in operations,
+/// for each of which a multiply-add could be done; rollout and training in the networks' multiply-adds, rollout with
+/// the environment's operations. A stage that falls behind its earlier share has lost something, whatever the machine.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PeakShares {
     pub physics: Pair,
@@ -65,8 +65,8 @@ pub struct BenchFigures {
     pub simd: String,
 }
 
-/// Arithmetic of one step of a vehicle, each operation of a block counted once (a multiply-add too), loads and stores not:
-/// the model alone, and the environment where nobody passes a gate or begins anew. A test counts them.
+/// Arithmetic of one step of a vehicle, each operation of a block counted once (a multiply-add too), loads and stores
+/// not: the model alone, and the environment where nobody passes a gate or begins anew. A test counts them.
 pub const PHYSICS_OPERATIONS: f64 = 162.0;
 pub const ENVIRONMENT_OPERATIONS: f64 = 1007.0;
 

@@ -1,8 +1,8 @@
 //! The configuration of a training run: one TOML file, changed from the command line, checked as a whole.
 //!
-//! A file needs to hold only what differs from the built-in `a2rl.toml`, which sets every key. Each table is a struct in the
-//! module that uses it; this module only puts them together. The file of a run sets every key; in one that an older racer
-//! wrote, keys that came later have their old meaning ([`later`]).
+//! A file needs to hold only what differs from the built-in `a2rl.toml`, which sets every key. Each table is a struct
+//! in the module that uses it; this module only puts them together. The file of a run sets every key; in one that an
+//! older racer wrote, keys that came later have their old meaning ([`later`]).
 
 pub mod later;
 mod layers;
@@ -43,8 +43,8 @@ pub struct Config {
 }
 
 impl Config {
-    /// Finds `name` in the working directory, in `configs/` or among the built-in ones, applies `settings` in order, and
-    /// checks the result. Keys that neither sets are those of the built-in `a2rl.toml`.
+    /// Finds `name` in the working directory, in `configs/` or among the built-in ones, applies `settings` in order,
+    /// and checks the result. Keys that neither sets are those of the built-in `a2rl.toml`.
     pub fn load(name: &str, settings: &[Setting]) -> Result<Self, BadInput> {
         Layers::open(name, settings)?.resolve()
     }

@@ -132,8 +132,8 @@ pub struct Outcome<L: Lane> {
 }
 
 impl Race {
-    /// A race on `track` with `vehicle`; `seed` decides every random number. Physical gates have the training aperture of
-    /// the configuration.
+    /// A race on `track` with `vehicle`; `seed` decides every random number. Physical gates have the training aperture
+    /// of the configuration.
     pub fn new(config: &EnvConfig, track: &Track, vehicle: &Vehicle, seed: u64) -> Self {
         let gates = gates::frames(track, Some(config.gate_radius_m));
         let lap = track
@@ -219,8 +219,8 @@ impl<L: Lane32> Block<L> {
         L::Bits::from_array(build!(|i| self.first + i as u32))
     }
 
-    /// Writes the observation of the 16 lanes, entry `k` to `out[k * stride..]`. A function of its own, as [`Block::step`]:
-    /// rollouts, evaluations and races share one compiled body for each kind of block.
+    /// Writes the observation of the 16 lanes, entry `k` to `out[k * stride..]`. A function of its own, as
+    /// [`Block::step`]: rollouts, evaluations and races share one compiled body for each kind of block.
     pub fn observe(&self, race: &Race, out: &mut [f32], stride: usize) {
         L::vectorize(
             #[inline(always)]

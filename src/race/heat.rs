@@ -13,8 +13,8 @@ use crate::race::env::{Block, Race};
 /// Most vehicles that race side by side.
 pub const MOST: usize = LANES;
 
-/// Flies `network` in `vehicles` vehicles, at most [`MOST`], from number `first` on, for at most `steps` steps each. Vehicle 0 is
-/// nominal; the others are those of an evaluation with the same seed.
+/// Flies `network` in `vehicles` vehicles, at most [`MOST`], from number `first` on, for at most `steps` steps each.
+/// Vehicle 0 is nominal; the others are those of an evaluation with the same seed.
 pub struct Heat<'a> {
     pub race: &'a Race,
     pub network: &'a Network<f32>,

@@ -1,15 +1,15 @@
 //! The reference lap: how fast a vehicle could be whose attitude followed at once.
 //!
-//! A point mass with the vehicle's largest thrust at a stated battery voltage, in any direction at any time, with gravity and
-//! with the drag that the vehicle's own equations give it in the attitude that has least, flies a closed lap through the
-//! apertures that a race is scored by, in their directions, and within the track's volume. Where it crosses an aperture is free.
-//! It flies the lap again and again: it ends as fast as it began. In none of this does the vehicle do better, and it has to turn
-//! before it can push.
+//! A point mass with the vehicle's largest thrust at a stated battery voltage, in any direction at any time, with
+//! gravity and with the drag that the vehicle's own equations give it in the attitude that has least, flies a closed
+//! lap through the apertures that a race is scored by, in their directions, and within the track's volume. Where it
+//! crosses an aperture is free. It flies the lap again and again: it ends as fast as it began. In none of this does the
+//! vehicle do better, and it has to turn before it can push.
 //!
-//! The lap is transcribed directly: places at equal times between gates, the times between gates and all places unknown,
-//! acceleration and velocity by differences. The time is minimised by Newton's method through logarithmic barriers ([`barrier`]),
-//! with exact second derivatives, from several first laps ([`EFFORT`]); the best is refined twice. What is found is a local
-//! optimum, not a bound that is proven.
+//! The lap is transcribed directly: places at equal times between gates, the times between gates and all places
+//! unknown, acceleration and velocity by differences. The time is minimised by Newton's method through logarithmic
+//! barriers ([`barrier`]), with exact second derivatives, from several first laps ([`EFFORT`]); the best is refined
+//! twice. What is found is a local optimum, not a bound that is proven.
 
 pub mod barrier;
 pub mod course;
@@ -27,8 +27,9 @@ use nalgebra::Vector3;
 use solve::solve;
 
 /// The method in a line.
-pub const METHOD: &str = "time-optimal closed lap of a point mass: full thrust in any direction at once, gravity, drag in the slimmest \
-attitude, through the scored apertures within the volume; local optimum of a direct transcription";
+pub const METHOD: &str = "time-optimal closed lap of a point mass: full thrust in any direction at once, gravity, \
+    drag in the slimmest \
+    attitude, through the scored apertures within the volume; local optimum of a direct transcription";
 
 /// How much is tried.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,8 +72,8 @@ pub struct Moment {
     pub thrust: Vector3<f64>,
 }
 
-/// The reference lap of `track` for the nominal `vehicle` with its battery at `voltage` (V), which stays. None where the vehicle
-/// cannot carry itself at that voltage. Effects beyond the compact model are left out.
+/// The reference lap of `track` for the nominal `vehicle` with its battery at `voltage` (V), which stays. None where
+/// the vehicle cannot carry itself at that voltage. Effects beyond the compact model are left out.
 pub fn lap(track: &Track, vehicle: &Vehicle, voltage: f64) -> Option<Reference> {
     let mass = Mass::new(vehicle, voltage);
     let found = best(&Course::new(track, mass), EFFORT)?;

@@ -50,7 +50,8 @@ impl Check for About {
 }
 
 impl Snapshot {
-    /// The race that the policy was trained for, in another vehicle if one is given, which the policy takes for its own.
+    /// The race that the policy was trained for, in another vehicle if one is given, which the policy takes for its
+    /// own.
     pub fn race(&self, vehicle: Option<&Vehicle>) -> Race {
         let About { track, vehicle: own, env, seed, .. } = &self.about;
         Race::new(env, track, vehicle.unwrap_or(own), *seed).seen_as(own)

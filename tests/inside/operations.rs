@@ -1,4 +1,5 @@
-//! The operations that `racer bench` holds against the machine's peak, counted by flying a block whose arithmetic counts itself.
+//! The operations that `racer bench` holds against the machine's peak, counted by flying a block whose arithmetic
+//! counts itself.
 
 use racer::base::lane::{Bits, LANES, Lane, Lane32, Mask, Portable, Real, Single, Tiled, Word, math};
 use racer::learn::ppo::Environment;

@@ -15,8 +15,8 @@ pub struct Library {
 }
 
 impl Library {
-    /// Opens `name`, a path or a bare name, with or without `.toml`. The first found counts: the path itself, the same in
-    /// the folder, then the built-in one. Fails where there is none, or where it is not TOML.
+    /// Opens `name`, a path or a bare name, with or without `.toml`. The first found counts: the path itself, the same
+    /// in the folder, then the built-in one. Fails where there is none, or where it is not TOML.
     pub fn open(&self, name: &str) -> Result<Document, BadInput> {
         if let Some(path) = self.paths(name).into_iter().find(|path| path.is_file()) {
             return Document::read(&path);

@@ -10,7 +10,8 @@ pub struct Found {
     pub whole: bool,
 }
 
-/// The line of a dotted key such as `env.reward.gate` or `gates[3].radius_m`; `None` where not even its first part exists.
+/// The line of a dotted key such as `env.reward.gate` or `gates[3].radius_m`; `None` where not even its first part
+/// exists.
 pub fn find(text: &str, key: &str) -> Option<Found> {
     let root = DeTable::parse(text).ok()?.into_inner();
     let root = DeValue::Table(root);

@@ -132,7 +132,10 @@ impl Mask for Avx2Mask {
 }
 
 macro_rules! real {
-    ($t:ty, $mask:ty, $features:literal, $of:expr, $fma:expr, $sqrt:expr, $abs:expr, $min:expr, $max:expr, $lt:expr, $le:expr, $select:expr) => {
+    (
+        $t:ty, $mask:ty, $features:literal, $of:expr, $fma:expr, $sqrt:expr, $abs:expr,
+        $min:expr, $max:expr, $lt:expr, $le:expr, $select:expr
+    ) => {
         impl Real for $t {
             type Mask = $mask;
             const FUSES: bool = true;

@@ -22,8 +22,8 @@ impl<E> Deref for Aligned<E> {
     type Target = [E];
     #[inline(always)]
     fn deref(&self) -> &[E] {
-        // SAFETY: blocks are arrays of 16 numbers whose size is a multiple of their alignment, so they lie without gaps;
-        // `len` is at most 16 times their number.
+        // SAFETY: blocks are arrays of 16 numbers whose size is a multiple of their alignment, so they lie without
+        // gaps; `len` is at most 16 times their number.
         unsafe { std::slice::from_raw_parts(self.blocks.as_ptr().cast(), self.len) }
     }
 }

@@ -1,8 +1,9 @@
-//! The one matrix product behind every layer, forward and backward: C = A B with B and C in rows of 64, A read by broadcast.
+//! The one matrix product behind every layer, forward and backward: C = A B with B and C in rows of 64, A read by
+//! broadcast.
 //!
-//! A tile of C stays in registers over the whole inner dimension: on AVX-512 24 accumulators for 4 loads and 6 broadcasts
-//! an inner step, so that the two multiply-add ports never wait for memory. What a tile starts as and what becomes of it
-//! while it is still in registers is a [`Finish`].
+//! A tile of C stays in registers over the whole inner dimension: on AVX-512 24 accumulators for 4 loads and 6
+//! broadcasts an inner step, so that the two multiply-add ports never wait for memory. What a tile starts as and what
+//! becomes of it while it is still in registers is a [`Finish`].
 
 use super::HIDDEN;
 use crate::base::lane::{LANES, Lane, Tiled, build};
@@ -108,7 +109,8 @@ impl<L: Lane, F: Finish<L>> Product<'_, L, F> {
 
     #[inline(always)]
     unsafe fn tile<const R: usize, const C: usize, const SUMS: bool>(&mut self, row: usize, block: usize) {
-        // SAFETY: rows row..row + R and blocks block..block + C are inside the matrices; the row of sums is not read from A.
+        // SAFETY: rows row..row + R and blocks block..block + C are inside the matrices; the row of sums is not read
+        // from A.
         unsafe {
             let mut tile: [[L; C]; R] = build!(|i| build!(|j| self.finish.start(row + i, block + j)));
             let mut a = self.a.data.as_ptr().wrapping_add(row * self.a.row);

@@ -5,7 +5,8 @@ use nalgebra::DMatrix;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
-/// Fills `weights` `[rows][columns]` with a random matrix with orthogonal rows or columns, whichever are fewer, times `gain`.
+/// Fills `weights` `[rows][columns]` with a random matrix with orthogonal rows or columns, whichever are fewer, times
+/// `gain`.
 pub fn orthogonal(weights: &mut [f32], columns: usize, gain: f64, rng: &mut Sequence) {
     let rows = weights.len() / columns;
     let (long, short) = (rows.max(columns), rows.min(columns));

@@ -1,5 +1,5 @@
-//! Loss and gradient of a chunk of a minibatch, in tiles whose activations stay in cache from the first layer's forward to
-//! the first layer's gradient.
+//! Loss and gradient of a chunk of a minibatch, in tiles whose activations stay in cache from the first layer's forward
+//! to the first layer's gradient.
 
 use super::batch::Batch;
 use super::loss::{Samples, TERMS, Weights, loss};

@@ -14,13 +14,14 @@ pub struct BudgetConfig {
     /// Environment steps, rounded up to whole rollouts. Repeats bit for bit, which a time cannot promise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steps: Option<u64>,
-    /// Policies kept, evenly over the budget; the last is the final one. All are evaluated afterwards and the best is chosen.
+    /// Policies kept, evenly over the budget; the last is the final one. All are evaluated afterwards and the best is
+    /// chosen.
     pub snapshots: usize,
 }
 
 impl BudgetConfig {
-    /// Share of the budget that `steps` environment steps in `seconds` have used, 0 to 1 and beyond. A budget of neither
-    /// minutes nor steps, which `check` refuses, is used up from the start.
+    /// Share of the budget that `steps` environment steps in `seconds` have used, 0 to 1 and beyond. A budget of
+    /// neither minutes nor steps, which `check` refuses, is used up from the start.
     pub fn share(&self, steps: u64, seconds: f64) -> f64 {
         match (self.steps, self.minutes) {
             (Some(total), _) => steps as f64 / total as f64,
@@ -74,8 +75,8 @@ pub struct PpoConfig {
     pub adam_epsilon: f64,
     /// lambda_a of Eq. 12: cost of the squared mean action, in the actor's loss. Higher flies with smaller commands.
     pub action_magnitude: f64,
-    /// Share of `action_magnitude` and of the reward's `action_change` to begin with; below 1 the policy learns to fly before it learns to
-    /// fly smoothly. They grow by the same factor from step to step.
+    /// Share of `action_magnitude` and of the reward's `action_change` to begin with; below 1 the policy learns to fly
+    /// before it learns to fly smoothly. They grow by the same factor from step to step.
     pub penalty_begin: f64,
     /// Share of the budget after which they are whole.
     pub penalty_full: f64,

@@ -19,8 +19,8 @@ pub struct Steps<'a> {
 
 /// Writes advantages and returns (advantage + value), `[rows][16]`.
 ///
-/// delta_t = r_t + gamma v_(t+1) - v_t; A_t = delta_t + gamma lambda A_(t+1). After a termination nothing follows; after a
-/// truncation v_(t+1) is the critic at the episode's own last observation, and the sum stops.
+/// delta_t = r_t + gamma v_(t+1) - v_t; A_t = delta_t + gamma lambda A_(t+1). After a termination nothing follows;
+/// after a truncation v_(t+1) is the critic at the episode's own last observation, and the sum stops.
 pub fn advantages(level: Level, steps: &Steps, gamma: f32, lambda: f32, advantages: &mut [f32], returns: &mut [f32]) {
     dispatch(level, Backwards { steps, gamma, lambda, advantages, returns });
 }

@@ -8,8 +8,8 @@ use crate::learn::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use crate::learn::policy;
 use rayon::prelude::*;
 
-/// What a rollout of `T` steps gathers. A row is 16 environments at one step; rows lie `[tile][T][block of the tile]`, and
-/// within a row numbers lie `[feature][16]`.
+/// What a rollout of `T` steps gathers. A row is 16 environments at one step; rows lie `[tile][T][block of the tile]`,
+/// and within a row numbers lie `[feature][16]`.
 #[derive(Clone, Debug)]
 pub struct Rollout {
     /// Rows of a tile: 4 T.
@@ -143,8 +143,8 @@ impl<E: Environment> Tile<E> {
     }
 }
 
-/// Flies `steps` steps in every tile under the stochastic policy, on the current rayon pool. `first_step` is the number of
-/// steps flown before, part of the random numbers' counter.
+/// Flies `steps` steps in every tile under the stochastic policy, on the current rayon pool. `first_step` is the number
+/// of steps flown before, part of the random numbers' counter.
 pub fn collect<E: Environment>(
     level: Level,
     environment: &E,

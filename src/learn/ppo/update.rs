@@ -1,7 +1,7 @@
 //! One optimiser step on a minibatch: forward, loss and backward on tiles that stay in cache, a fixed-order sum, Adam.
 //!
-//! Work is cut into chunks of a fixed number of rows whatever the thread count, each with a gradient of its own, summed in
-//! order: one thread and many give the same bits.
+//! Work is cut into chunks of a fixed number of rows whatever the thread count, each with a gradient of its own, summed
+//! in order: one thread and many give the same bits.
 
 use super::batch::Batch;
 use super::chunk::{Chunk, Job, Worker};

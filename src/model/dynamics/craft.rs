@@ -12,7 +12,8 @@ pub struct Craft<R> {
     equations: Equations<R>,
 }
 
-/// The compact model, or the one with effects. The latter lies apart, so that a compact vehicle neither holds nor moves any of it.
+/// The compact model, or the one with effects. The latter lies apart, so that a compact vehicle neither holds nor moves
+/// any of it.
 #[derive(Clone, Debug)]
 enum Equations<R> {
     Compact(Parameters<R>),

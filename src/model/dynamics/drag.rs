@@ -13,7 +13,8 @@ pub fn ellipsoid(drag: &Drag) -> [f64; 3] {
     [b * c, a * c, a * b].map(|area| 0.5 * drag.air_density_kg_m3 * drag.coefficient * std::f64::consts::PI * area)
 }
 
-/// Semi-axes (m) of the ellipsoid with this coefficient and air density (kg/m3) whose [`ellipsoid`] is `k` (kg/m, above 0).
+/// Semi-axes (m) of the ellipsoid with this coefficient and air density (kg/m3) whose [`ellipsoid`] is `k` (kg/m, above
+/// 0).
 pub fn semi_axes(k: [f64; 3], coefficient: f64, air_density_kg_m3: f64) -> [f64; 3] {
     let [x, y, z] = k.map(|k| k / (0.5 * air_density_kg_m3 * coefficient * std::f64::consts::PI));
     [(y * z / x).sqrt(), (x * z / y).sqrt(), (x * y / z).sqrt()]

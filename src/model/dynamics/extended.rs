@@ -43,7 +43,8 @@ impl Extended<f64> {
         Self::of(vehicle, Parameters::new(vehicle, factors, dt), tau, effects)
     }
 
-    /// The same with all numbers given: the compact model's, time constants (s), and the effects'; of `vehicle` the battery is used.
+    /// The same with all numbers given: the compact model's, time constants (s), and the effects'; of `vehicle` the
+    /// battery is used.
     pub fn of(vehicle: &Vehicle, compact: Parameters<f64>, tau: [f64; 4], effects: [f64; effects::COUNT]) -> Self {
         let parts = (compact.dt / FINE_S).ceil() as u32;
         let battery = &vehicle.battery;
@@ -79,8 +80,8 @@ impl<L: Lane> Extended<L> {
     }
 }
 
-/// One step under the held command `action`: a function of its own, so that it is compiled once for each kind of number and not again
-/// in every kernel that steps.
+/// One step under the held command `action`: a function of its own, so that it is compiled once for each kind of number
+/// and not again in every kernel that steps.
 pub fn step<R: Real>(s: &mut State<R>, p: &Extended<R>, memory: &mut Memory<R>, action: [R; 4]) {
     R::vectorize(
         #[inline(always)]

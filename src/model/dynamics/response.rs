@@ -13,8 +13,8 @@ pub fn toward<R: Real>(from: R, to: R, alpha: R) -> R {
     alpha.mul_add(to - from, from)
 }
 
-/// First order whose slope is at most one over `slew` (s), after `dt` seconds: straight while the gap is more than the limit times
-/// `tau`, exponential afterwards.
+/// First order whose slope is at most one over `slew` (s), after `dt` seconds: straight while the gap is more than the
+/// limit times `tau`, exponential afterwards.
 #[inline(always)]
 pub fn limited<R: Real>(from: R, to: R, tau: R, slew: R, dt: R) -> R {
     let slew = slew.max(R::of(1e-12));

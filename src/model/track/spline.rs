@@ -8,10 +8,10 @@ const PIECES: usize = 256;
 /// A cyclic Catmull-Rom spline with uniform knots.
 ///
 /// Knots are uniform because the tangent at a point is then parallel to the chord between its neighbours, however short
-/// the way to one of them is. Where two gates stand on top of each other (split-S, ladder) this leaves the upper gate in
-/// its direction of crossing and enters the lower one in its own: within 27 degrees at the split-S of A2RL Season 2, where
-/// centripetal knots, which follow the short chord straight down, are off by 45. Loops, which uniform knots can make,
-/// need a detour that comes back to where it left; no shipped track has one.
+/// the way to one of them is. Where two gates stand on top of each other (split-S, ladder) this leaves the upper gate
+/// in its direction of crossing and enters the lower one in its own: within 27 degrees at the split-S of A2RL Season 2,
+/// where centripetal knots, which follow the short chord straight down, are off by 45. Loops, which uniform knots can
+/// make, need a detour that comes back to where it left; no shipped track has one.
 #[derive(Clone, Debug)]
 pub struct Spline {
     segments: Vec<Segment>,
@@ -76,8 +76,8 @@ impl Spline {
         self.segments[segment].tangent(t)
     }
 
-    /// Curvature at arc length `s`, 1/m; any `s`. At a control point that of the segment after it: the curve has no kinks there,
-    /// but its curvature jumps.
+    /// Curvature at arc length `s`, 1/m; any `s`. At a control point that of the segment after it: the curve has no
+    /// kinks there, but its curvature jumps.
     pub fn curvature(&self, s: f64) -> f64 {
         let (segment, t) = self.locate(s);
         self.segments[segment].curvature(t)
@@ -199,7 +199,8 @@ mod tests {
         assert!((spline.position(2.0 * length + 3.0) - spline.position(3.0)).norm() < 1e-9);
     }
 
-    /// A Catmull-Rom spline misses a circle by the fourth power of the angle between points: 64 points, one part in 10^6.
+    /// A Catmull-Rom spline misses a circle by the fourth power of the angle between points: 64 points, one part in
+    /// 10^6.
     #[test]
     fn the_length_of_a_circle_of_points() {
         let angle = |i: u32| f64::from(i) / 64.0 * TAU;

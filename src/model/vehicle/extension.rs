@@ -19,8 +19,8 @@ pub struct Extension {
     /// By identifier, then by name of the parameter.
     #[serde(default)]
     pub sizes: BTreeMap<String, BTreeMap<String, f64>>,
-    /// Parameters as `effect.parameter`, and their covariance in this order: they are drawn jointly with it for each episode of
-    /// training. None: they are not randomised.
+    /// Parameters as `effect.parameter`, and their covariance in this order: they are drawn jointly with it for each
+    /// episode of training. None: they are not randomised.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub uncertain: Vec<String>,
     /// The covariance of `uncertain`, in their units.

@@ -22,8 +22,8 @@ pub fn is_later(key: &str) -> bool {
     LATER.iter().any(|later| later.key == key)
 }
 
-/// Gives every later key that `table` lacks its old meaning. `table` is a whole configuration, or `part` of one, such as
-/// `env`; tables that are not there stay away.
+/// Gives every later key that `table` lacks its old meaning. `table` is a whole configuration, or `part` of one, such
+/// as `env`; tables that are not there stay away.
 pub fn complete(table: &mut Table, part: Option<&str>) {
     for Later { key, before } in LATER {
         let key = match part {

@@ -38,8 +38,8 @@ impl<'a> Layers<'a> {
         Ok(config)
     }
 
-    /// The file's table. One that sets every key is that of a run, and keys that came after it have their old meaning; in any
-    /// other, what is not set is as built in.
+    /// The file's table. One that sets every key is that of a run, and keys that came after it have their old meaning;
+    /// in any other, what is not set is as built in.
     fn whole_file(&self) -> Table {
         let mut table = self.file.table().clone();
         let mut keys = Vec::new();

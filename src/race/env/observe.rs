@@ -102,8 +102,8 @@ const SCALES: [(f32, f32); OBSERVATIONS] = {
     all
 };
 
-/// Writes the observation of the 16 lanes of `block`, entry `k` to `out[k * stride..]`, with `noise` on what an estimator
-/// would have to estimate. `voltage_scale` is the offset and scale of the voltage.
+/// Writes the observation of the 16 lanes of `block`, entry `k` to `out[k * stride..]`, with `noise` on what an
+/// estimator would have to estimate. `voltage_scale` is the offset and scale of the voltage.
 #[inline(always)]
 pub fn observe<L: Lane<Elem = f32>>(
     block: &Block<L>,

@@ -11,8 +11,8 @@ impl Report {
         self.fixed.as_ref().map_or(0.0, |fixed| fixed.lap_completion)
     }
 
-    /// Larger for better policies, entry by entry: fixed-start lap completion (the paper's choice), then the median lap time,
-    /// then gates passed, which tells policies apart that do not lap.
+    /// Larger for better policies, entry by entry: fixed-start lap completion (the paper's choice), then the median lap
+    /// time, then gates passed, which tells policies apart that do not lap.
     pub fn rank(&self) -> [f64; 3] {
         let Some(fixed) = &self.fixed else { return [f64::NEG_INFINITY; 3] };
         let lap_time = fixed.lap_time_s.map_or(f64::INFINITY, |time| time.median);

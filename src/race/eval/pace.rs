@@ -20,8 +20,8 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// How the laps of `report` on `track` compare. Both are flying laps, from a crossing of the first gate to its next. None
-    /// where no reference lap exists.
+    /// How the laps of `report` on `track` compare. Both are flying laps, from a crossing of the first gate to its
+    /// next. None where no reference lap exists.
     pub fn of(report: &Report, track: &Track, vehicle: &Vehicle) -> Option<Self> {
         let reference = reference::lap(track, vehicle, vehicle.battery.full_v)?;
         let ratio = |benchmark: &Option<Benchmark>| Some(benchmark.as_ref()?.lap_time_s?.median / reference.seconds);

@@ -14,7 +14,8 @@ pub struct Benchmark {
     pub agents: usize,
     /// Share of agents that passed all gates in order and the first one again.
     pub lap_completion: f64,
-    /// Time from the first crossing of the first gate to the next, over completed laps; none where no lap was completed.
+    /// Time from the first crossing of the first gate to the next, over completed laps; none where no lap was
+    /// completed.
     pub lap_time_s: Option<LapTime>,
     /// Gates that they passed.
     pub gates_passed: GatesPassed,

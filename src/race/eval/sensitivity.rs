@@ -35,7 +35,8 @@ pub struct Row {
     pub loss: f64,
     /// The slowest median lap less the nominal vehicle's, s.
     pub slower_s: Option<f64>,
-    /// Values around the nominal one from the least to the greatest without one between them that completes fewer than 95 % of laps.
+    /// Values around the nominal one from the least to the greatest without one between them that completes fewer than
+    /// 95 % of laps.
     pub holds: Option<[f64; 2]>,
     pub cells: Vec<Cell>,
 }
@@ -49,9 +50,9 @@ pub struct Cell {
     pub lap_s: Option<f64>,
 }
 
-/// Flies `config.agents` agents from the pad for each value of each parameter: the apertures are those of a score, observations and
-/// actions have the noise of the training. Without it all flights of a cell would be the same flight. `observer` is told the share
-/// that is done. Runs on the current rayon pool.
+/// Flies `config.agents` agents from the pad for each value of each parameter: the apertures are those of a score,
+/// observations and actions have the noise of the training. Without it all flights of a cell would be the same flight.
+/// `observer` is told the share that is done. Runs on the current rayon pool.
 pub fn sensitivity(
     level: Level,
     race: &Race,

@@ -1,4 +1,5 @@
-//! How far randomised vehicles fly from where the nominal one does, and where along the lap they do most (paper Figure 7).
+//! How far randomised vehicles fly from where the nominal one does, and where along the lap they do most (paper Figure
+//! 7).
 
 use crate::base::lane::{Level, dispatch};
 use crate::base::stats::quantile;
@@ -23,8 +24,8 @@ pub struct Spread {
     pub gates: Vec<(f64, usize)>,
 }
 
-/// Distances from a place of the nominal flight to where the others crossed the plane through it that the nominal vehicle crossed
-/// at right angles.
+/// Distances from a place of the nominal flight to where the others crossed the plane through it that the nominal
+/// vehicle crossed at right angles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Station {
     /// Length of the nominal flight until there, m.
@@ -47,8 +48,8 @@ const FAR_M: f64 = 8.0;
 /// Least vehicles that a spread is told from.
 const LEAST: usize = 5;
 
-/// Flies the nominal vehicle and `randomised` others of an evaluation for a lap each, at most `max_steps` steps; `race` is made
-/// scored first. Runs on the current rayon pool.
+/// Flies the nominal vehicle and `randomised` others of an evaluation for a lap each, at most `max_steps` steps; `race`
+/// is made scored first. Runs on the current rayon pool.
 pub fn spread(
     level: Level,
     race: &Race,
@@ -82,8 +83,8 @@ pub fn spread(
 }
 
 impl Spread {
-    /// Where the randomised vehicles spread most, by the 90 % quantile. A single station that stands out is where the nominal vehicle turns back
-    /// and its plane cuts the others' way twice.
+    /// Where the randomised vehicles spread most, by the 90 % quantile. A single station that stands out is where the
+    /// nominal vehicle turns back and its plane cuts the others' way twice.
     pub fn widest(&self) -> Option<&Station> {
         let lasting = |three: &&[Station]| three.iter().map(|s| s.p90_m).fold(f64::INFINITY, f64::min);
         self.profile.windows(3).max_by(|a, b| lasting(a).total_cmp(&lasting(b))).map(|three| &three[1])
@@ -102,7 +103,8 @@ fn lengths(path: &[Vector3<f64>]) -> Vec<f64> {
         .collect()
 }
 
-/// Stations along `nominal`, whose vehicle flew to the gates `targets`. Each of the `others` is followed from plane to plane.
+/// Stations along `nominal`, whose vehicle flew to the gates `targets`. Each of the `others` is followed from plane to
+/// plane.
 pub fn profile(nominal: &[Vector3<f64>], targets: &[usize], others: &[Vec<Vector3<f64>>]) -> Vec<Station> {
     let lengths = lengths(nominal);
     let mut last_crossed = vec![0_usize; others.len()];

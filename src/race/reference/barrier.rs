@@ -55,8 +55,8 @@ pub fn value(course: &Course, lap: &Nodes, mu: f64) -> f64 {
     lap.total() + mu * sum
 }
 
-/// The room left to limits of position, in m or as a share of the aperture: with its derivatives by the position, and which of
-/// the three nodes of the place it is about.
+/// The room left to limits of position, in m or as a share of the aperture: with its derivatives by the position, and
+/// which of the three nodes of the place it is about.
 fn rooms(course: &Course, lap: &Nodes, place: &Place) -> Vec<(f64, usize, Vector3<f64>, f64)> {
     let mut rooms = Vec::with_capacity(9);
     let p = lap.positions[place.nodes[1]];

@@ -48,8 +48,8 @@ impl Course {
         Course { mass, gates: gates.collect(), volume: [track.volume.min_m, track.volume.max_m] }
     }
 
-    /// A slow lap along cubics that cross each gate at right angles, with about `density` steps to a gate; `disorder` above 0
-    /// bends them at random. None where a gate cannot be reached.
+    /// A slow lap along cubics that cross each gate at right angles, with about `density` steps to a gate; `disorder`
+    /// above 0 bends them at random. None where a gate cannot be reached.
     pub fn guess(&self, density: usize, disorder: f64, rng: &mut Sequence) -> Option<Nodes> {
         let count = self.gates.len();
         let crossings: Option<Vec<_>> = self.gates.iter().map(|gate| self.crossing(gate)).collect();

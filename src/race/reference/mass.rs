@@ -22,8 +22,8 @@ pub struct Mass {
 const NEVER_ZERO: f64 = 1e-9;
 
 impl Mass {
-    /// The nominal `vehicle` with the battery at `voltage` (V). Drag is that of the attitude which has the least: a vehicle that
-    /// turns at once might as well fly in it, and none has less.
+    /// The nominal `vehicle` with the battery at `voltage` (V). Drag is that of the attitude which has the least: a
+    /// vehicle that turns at once might as well fly in it, and none has less.
     pub fn new(vehicle: &Vehicle, voltage: f64) -> Self {
         // No number that is taken from it depends on the length of the step.
         let p = Parameters::new(vehicle, &Factors::NOMINAL, CONTROL_S);

@@ -4,8 +4,8 @@ use super::barrier::{Slopes, slopes, value};
 use super::course::{Course, Nodes};
 use nalgebra::Vector3;
 
-/// Weight of each barrier: at first, between stages, and at the end; s. At the end all barriers together cost less than a
-/// thousandth of a lap.
+/// Weight of each barrier: at first, between stages, and at the end; s. At the end all barriers together cost less than
+/// a thousandth of a lap.
 const MU: [f64; 3] = [1e-2, 0.25, 2e-7];
 /// Steps of Newton's method in a stage, and halvings of one.
 const NEWTON: usize = 60;
@@ -13,8 +13,8 @@ const HALVINGS: usize = 40;
 /// A stage ends where a step promises less than this many barriers' weight.
 const SETTLED: f64 = 0.05;
 
-/// The fastest lap near `lap`, which is slowed down first until it keeps every limit; from the weight `mu` on, s. None where no
-/// speed keeps them.
+/// The fastest lap near `lap`, which is slowed down first until it keeps every limit; from the weight `mu` on, s. None
+/// where no speed keeps them.
 pub fn solve(course: &Course, mut lap: Nodes, mu: Option<f64>) -> Option<Nodes> {
     let keeps = |lap: &Nodes| value(course, lap, 1.0).is_finite();
     for _ in 0..60 {

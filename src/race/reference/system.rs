@@ -30,7 +30,8 @@ impl System {
         self.corner.fill(0.0);
     }
 
-    /// Adds to the entry of row `i` and column `j` of the lower half; entries with `i < j` are the other half's and are left out.
+    /// Adds to the entry of row `i` and column `j` of the lower half; entries with `i < j` are the other half's and are
+    /// left out.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         let inner = self.band.len();
         if i < j {
@@ -43,8 +44,8 @@ impl System {
         }
     }
 
-    /// The solution for `right`, after a share `shift` of the diagonal has been added to it; none unless the matrix is then
-    /// positive definite.
+    /// The solution for `right`, after a share `shift` of the diagonal has been added to it; none unless the matrix is
+    /// then positive definite.
     pub fn solve(&self, right: &[f64], shift: f64) -> Option<Vec<f64>> {
         let (inner, border) = (self.band.len(), self.corner.nrows());
         let raised = |x: f64| x + shift * x.abs().max(1e-9);

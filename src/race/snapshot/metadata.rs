@@ -1,7 +1,7 @@
 //! What stands beside the weights: what whoever flies the policy has to know, and apart from it what it was trained on.
 //!
-//! Version 1, up to racer at commit 73e7003, had both in one table, with the training as `about`. In every version a key that
-//! is missing because it came later has its old meaning ([`later`]).
+//! Version 1, up to racer at commit 73e7003, had both in one table, with the training as `about`. In every version a
+//! key that is missing because it came later has its old meaning ([`later`]).
 
 use super::About;
 use crate::base::check::{Check, Invalid};

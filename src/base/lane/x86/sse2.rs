@@ -1,5 +1,5 @@
-//! The block in four registers of 128 bits, which every x86-64 has: what runs where AVX2 is not. Multiply-add is not fused, and
-//! results are those of [`super::super::Portable`] bit for bit.
+//! The block in four registers of 128 bits, which every x86-64 has: what runs where AVX2 is not. Multiply-add is not
+//! fused, and results are those of [`super::super::Portable`] bit for bit.
 
 use crate::base::lane::{Bits, LANES, Lane, Lane32, Mask, Real, Single, Tiled, Word, math};
 use std::arch::x86_64::*;
@@ -171,7 +171,8 @@ impl Real for Sse2 {
 impl Single for Sse2 {
     #[inline(always)]
     fn round(self) -> Self {
-        // Adding and taking away 1.5 * 2^23 rounds to even; what is larger than 2^22 has next to nothing after the point.
+        // Adding and taking away 1.5 * 2^23 rounds to even; what is larger than 2^22 has next to nothing after the
+        // point.
         let magic = Self::of(12_582_912.0);
         Self::select(self.abs().lt(Self::of(4_194_304.0)), (self + magic) - magic, self)
     }

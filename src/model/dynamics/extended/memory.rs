@@ -50,8 +50,8 @@ impl<L: Lane> Memory<L> {
 }
 
 impl<R: Real> Memory<R> {
-    /// Takes in the held command `action`, of which roll, pitch, yaw and thrust arrive `delay` seconds late. What is never
-    /// late needs no memory, and is not remembered.
+    /// Takes in the held command `action`, of which roll, pitch, yaw and thrust arrive `delay` seconds late. What is
+    /// never late needs no memory, and is not remembered.
     #[inline(always)]
     pub fn hold(&mut self, action: [R; 4], delay: [R; 4]) -> Held<R> {
         let mut late = R::zero().lt(delay[0]);

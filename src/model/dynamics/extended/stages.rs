@@ -29,7 +29,8 @@ pub fn command_delays<R: Real>(p: &Extended<R>) -> [R; 4] {
     [delay.rates, delay.rates, yaw, delay.thrust]
 }
 
-/// The filtered commands and their slope `h` seconds later, while the commands that arrive are `sent`, at terminal `voltage`.
+/// The filtered commands and their slope `h` seconds later, while the commands that arrive are `sent`, at terminal
+/// `voltage`.
 #[inline(always)]
 pub fn actuator_response<R: Real>(
     p: &Extended<R>,
@@ -83,7 +84,8 @@ pub fn body_rates<R: Real>(p: &Extended<R>, command: [R; 4]) -> [R; 3] {
     body.rates
 }
 
-/// Terminal voltage and polarisation (V) after `dt` seconds under the filtered thrust command, from the open-circuit voltage.
+/// Terminal voltage and polarisation (V) after `dt` seconds under the filtered thrust command, from the open-circuit
+/// voltage.
 #[inline(always)]
 pub fn terminal<R: Real>(p: &Extended<R>, open: R, command: R, polarisation: R, dt: R) -> (R, R) {
     let s = throttle(command);
@@ -137,7 +139,8 @@ impl<R: Real> ForceInputs<R> {
     }
 }
 
-/// Time since the battery was full, from its open-circuit voltage, s; at most an hour, for batteries that hardly discharge.
+/// Time since the battery was full, from its open-circuit voltage, s; at most an hour, for batteries that hardly
+/// discharge.
 #[inline(always)]
 pub fn elapsed<R: Real>(p: &Extended<R>, open: R) -> R {
     ((p.full_v - open) / (-p.compact.voltage_rate).max(R::of(1e-6))).clamp(R::zero(), R::of(3600.0))
