@@ -19,7 +19,7 @@ criteria! {
     /// Parameters of an effect, in large typical sizes.
     TRUST_EFFECT = 3.0, Assumed("nothing is said about what is at most typical");
     /// Voltage at the beginning of a flight, V.
-    TRUST_VOLTAGE = 10.0, Assumed("any pack");
+    TRUST_VOLTAGE = 10.0, Assumed("more than lies between a full and an empty pack");
     /// Smallest time constant of an effect's shape, in small typical sizes.
     SHORTEST_SHAPE = 0.3, Assumed("a time constant that goes to nothing is another effect");
 }

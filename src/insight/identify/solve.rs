@@ -216,7 +216,7 @@ mod tests {
     #[test]
     fn values_and_intervals_hold_with_outliers() {
         let mut inside = 0;
-        for seed in 0..40 {
+        for seed in 0..160 {
             let (t, y, blocks) = data(seed);
             let residuals =
                 |x: &[f64]| vec![t.iter().zip(&y).map(|(t, y)| x[0] * (-t / x[1]).exp() - y).collect::<Vec<_>>()];
@@ -226,8 +226,9 @@ mod tests {
             inside += usize::from((found.values[1] - 0.7).abs() < found.half_width(1));
             assert!((found.noise[0] - 0.1).abs() < 0.01);
         }
-        // 95 % of 80, within three standard deviations.
-        assert!((70..=80).contains(&inside), "{inside}");
+        // 95 % of 320, less some 3 % that outliers to one side take; both values move together, so that four standard
+        // deviations are 20.
+        assert!((275..=315).contains(&inside), "{inside}");
     }
 
     #[test]
