@@ -36,8 +36,8 @@ const LONGEST_S: f64 = 3600.0;
 /// Time that is recorded after the landing, s.
 const AFTER_S: f64 = 1.0;
 
-/// The excitation pilot flies `kinds` of manoeuvres, all where none is named, from the ground until it has landed, for at
-/// most `seconds`. It lands early where the battery is empty before.
+/// The excitation pilot flies `kinds` of manoeuvres, all where none is named, from the ground until it has landed, for
+/// at most `seconds`. It lands early where the battery is empty before.
 pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Manoeuvre], seed: u64, seconds: f64) -> Flown {
     let battery = &vehicle.battery;
     let limits = Limits {
@@ -94,8 +94,8 @@ fn settle(recorder: &mut Recorder) {
     }
 }
 
-/// A policy's deterministic mean races from the pad, lap after lap, until it fails or for `seconds`. The states at 100 Hz
-/// are those of the race, so that it flies as in an evaluation; what lies between is integrated from each of them.
+/// A policy's deterministic mean races from the pad, lap after lap, until it fails or for `seconds`. The states at 100
+/// Hz are those of the race, so that it flies as in an evaluation; what lies between is integrated from each of them.
 pub fn by_policy(
     level: Level,
     race: &Race,

@@ -1,5 +1,5 @@
-//! What a format of log files has to be able to do. A new one is a type that implements [`Format`], and a line in the list of
-//! `open.rs`.
+//! What a format of log files has to be able to do. A new one is a type that implements [`Format`], and a line in the
+//! list of `open.rs`.
 
 use super::mapping::Mapping;
 use super::table::Tables;
@@ -34,8 +34,8 @@ pub trait Format: Sync {
     /// Name of the built-in mapping for the file, and a remark where others were possible.
     fn mapping(&self, file: &File) -> Result<(&'static str, Option<String>), BadInput>;
 
-    /// Reads what the mapping names; of other tables the name at least, for messages about what is not there. A file that
-    /// breaks off, or turns bad, gives what came before.
+    /// Reads what the mapping names; of other tables the name at least, for messages about what is not there. A file
+    /// that breaks off, or turns bad, gives what came before.
     fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput>;
 
     /// Whether a file may hold several flights.

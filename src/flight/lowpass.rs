@@ -47,7 +47,8 @@ impl LowPass {
 mod tests {
     use super::*;
 
-    /// Amplitude of a filtered sine of unit amplitude, and its phase against the original, from the middle of a long record.
+    /// Amplitude of a filtered sine of unit amplitude, and its phase against the original, from the middle of a long
+    /// record.
     fn response(hz: f64) -> (f64, f64) {
         let (dt, n) = (0.001, 20_000);
         let phase = |i: usize| 2.0 * PI * hz * i as f64 * dt;

@@ -1,7 +1,7 @@
 //! MCAP files, read through the schemas that they hold.
 //!
-//! Every number and flag of a message becomes a column named by its path; a time becomes seconds. Nothing in a file makes
-//! the reader panic, and what it may allocate is bounded ([`column`], [`chunk`], [`decoder`]).
+//! Every number and flag of a message becomes a column named by its path; a time becomes seconds. Nothing in a file
+//! makes the reader panic, and what it may allocate is bounded ([`column`], [`chunk`], [`decoder`]).
 
 mod bytes;
 mod cdr;
@@ -67,7 +67,8 @@ pub struct Topic {
 
 /// The topics for which `wanted` is true, each as a table with the time of logging in `@log_time`.
 ///
-/// A file that breaks off gives what came before. An error if the bytes are no MCAP file, or a wanted topic cannot be decoded.
+/// A file that breaks off gives what came before. An error if the bytes are no MCAP file, or a wanted topic cannot be
+/// decoded.
 #[cfg(feature = "internals")]
 pub fn tables(bytes: &[u8], wanted: &dyn Fn(&str) -> bool) -> Result<Tables, BadInput> {
     Ok(read(bytes, wanted)?.0)

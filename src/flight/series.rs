@@ -5,7 +5,8 @@ pub fn last_at(times: &[f64], t: f64) -> Option<usize> {
     times.partition_point(|&time| time <= t).checked_sub(1)
 }
 
-/// `values` (at ascending `times`) at each of `at`, linear in between; NaN outside, and across more than `reach` seconds.
+/// `values` (at ascending `times`) at each of `at`, linear in between; NaN outside, and across more than `reach`
+/// seconds.
 pub fn interpolated(times: &[f64], values: &[f64], at: &[f64], reach: f64) -> Vec<f64> {
     let one = |&t: &f64| {
         let Some(i) = last_at(times, t) else { return f64::NAN };

@@ -9,8 +9,8 @@ pub const LOG_TIME: &str = "@log_time";
 /// Rows of one topic, message type or CSV file. Every column has one number for each row; NaN where a row lacks it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// Field path such as `angular_velocity.x` or `pose.pose.position.z` or `velocity[2]`, to values. Times (`header.stamp`,
-    /// a builtin time) are seconds.
+    /// Field path such as `angular_velocity.x` or `pose.pose.position.z` or `velocity[2]`, to values. Times
+    /// (`header.stamp`, a builtin time) are seconds.
     pub columns: BTreeMap<String, Vec<f64>>,
 }
 

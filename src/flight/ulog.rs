@@ -1,5 +1,5 @@
-//! PX4 ULog files: one table a topic, `topic#1` for its second instance. Read by ourselves: the library for it panics on
-//! damaged files, and unfolds a small hostile one into gigabytes.
+//! PX4 ULog files: one table a topic, `topic#1` for its second instance. Read by ourselves: the library for it panics
+//! on damaged files, and unfolds a small hostile one into gigabytes.
 
 use super::Readable;
 use super::format::{Content, File, Format};
@@ -53,8 +53,8 @@ enum EarlyEnd {
     Bad(String),
 }
 
-/// Reads the topics that are `wanted`; of others the name alone, as an empty table. Times are in s since the vehicle's start.
-/// A file that breaks off, or turns bad, gives what came before.
+/// Reads the topics that are `wanted`; of others the name alone, as an empty table. Times are in s since the vehicle's
+/// start. A file that breaks off, or turns bad, gives what came before.
 pub fn tables(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result<Tables, BadInput> {
     if bytes.len() < HEADER_BYTES || !bytes.starts_with(MAGIC) {
         return Err(BadInput::new(name, "no ULog header", "a PX4 ULog file", ""));

@@ -1,4 +1,5 @@
-//! Logs written in the canonical form: MCAP with ROS 2 messages in CDR and the definitions that any ROS tool reads them by.
+//! Logs written in the canonical form: MCAP with ROS 2 messages in CDR and the definitions that any ROS tool reads them
+//! by.
 
 mod cdr;
 mod message;
@@ -18,8 +19,8 @@ type File = Writer<Cursor<Vec<u8>>>;
 
 /// The bytes of a canonical MCAP file.
 ///
-/// Messages are in time order over all streams, but each stream keeps its own order. Battery voltage and current and the
-/// setpoint's thrust become `f32`. An error if a time is not finite, or before 1970 or after 2038.
+/// Messages are in time order over all streams, but each stream keeps its own order. Battery voltage and current and
+/// the setpoint's thrust become `f32`. An error if a time is not finite, or before 1970 or after 2038.
 pub fn mcap(log: &Log) -> Result<Vec<u8>> {
     let mut file = WriteOptions::new()
         .profile("ros2")

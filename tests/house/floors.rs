@@ -1,4 +1,5 @@
-//! The floors of ARCHITECTURE.md, read from the imports: floors import downwards only, and no folder has rooms in a circle.
+//! The floors of ARCHITECTURE.md, read from the imports: floors import downwards only, and no folder has rooms in a
+//! circle.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

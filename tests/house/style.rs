@@ -83,7 +83,8 @@ fn no_function_is_longer_than_60_lines() {
 
 #[test]
 fn functions_are_measured_with_signature_and_braces() {
-    let text = "fn a() {\n    1\n}\n\nimpl X {\n    pub fn b(\n        c: u8,\n    ) -> u8 {\n        c\n    }\n    fn d();\n}\n";
+    let text = "fn a() {\n    1\n}\n\nimpl X {\n    pub fn b(\n        c: u8,\n    ) -> u8 {\n        c\n    }\n    \
+                fn d();\n}\n";
     let found = functions(text);
     assert_eq!(found.iter().map(|(line, length, _)| (*line, *length)).collect::<Vec<_>>(), [(1, 3), (6, 5)]);
 }

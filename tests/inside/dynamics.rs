@@ -100,8 +100,8 @@ fn hover() {
     assert!(distance(s.position, [0.0, 0.0, 10.0]) < 1e-9 && distance(s.velocity, [0.0; 3]) < 1e-9, "{s:?}");
 }
 
-/// Falling flat without thrust, drag balances weight at v = sqrt(2 m g / (rho C_D pi a b)): a disk of the ellipsoid's largest
-/// section; on its side the sections are smaller and it falls faster.
+/// Falling flat without thrust, drag balances weight at v = sqrt(2 m g / (rho C_D pi a b)): a disk of the ellipsoid's
+/// largest section; on its side the sections are smaller and it falls faster.
 #[test]
 fn terminal_velocity() {
     let mut vehicle = vehicle();

@@ -76,7 +76,8 @@ fn largest(a: &[f64], b: &[f64], scaled: bool) -> f64 {
     a.iter().zip(b).map(off).fold(0.0, f64::max)
 }
 
-/// In one batch, so that every lane shares its block with effects that it has not; a vehicle without effects has a block of its own.
+/// In one batch, so that every lane shares its block with effects that it has not; a vehicle without effects has a
+/// block of its own.
 #[test]
 fn every_effect_changes_the_flight_and_a_batch_agrees() {
     const STEPS: usize = 50;

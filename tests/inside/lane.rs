@@ -2,7 +2,8 @@
 
 use racer::base::lane::{Kernel, LANES, Lane32, Level, Mask, dispatch};
 
-/// Largest errors over dense sweeps, in the order exp (relative), ln (relative or absolute near 1), tanh (relative), sin/cos.
+/// Largest errors over dense sweeps, in the order exp (relative), ln (relative or absolute near 1), tanh (relative),
+/// sin/cos.
 struct Errors;
 impl Kernel for Errors {
     type Output = [f64; 4];

@@ -45,7 +45,8 @@ fn attitude(row: &[f64; 10]) -> UnitQuaternion<f64> {
     UnitQuaternion::from_quaternion(Quaternion::new(row[3], row[4], row[5], row[6]))
 }
 
-/// How the attitude turns along each axis, compared with the gyro: correlation and slope. Both streams share their rows.
+/// How the attitude turns along each axis, compared with the gyro: correlation and slope. Both streams share their
+/// rows.
 fn attitude_turns_as_gyro(log: &Log, step: usize) -> [(f64, f64); 3] {
     let Stream { time_s, rows } = &log.odometry;
     let at = |i: usize| {

@@ -1,7 +1,7 @@
 //! Canonical logs, exchanged with the Python packages `mcap` and `mcap-ros2-support` in both directions.
 //!
-//! `RACER_PYTHON` names the interpreter (default `python3`). Where it or the packages are missing, the tests say so and pass,
-//! unless `RACER_REQUIRE_PYTHON` is set.
+//! `RACER_PYTHON` names the interpreter (default `python3`). Where it or the packages are missing, the tests say so and
+//! pass, unless `RACER_REQUIRE_PYTHON` is set.
 
 use crate::support::python;
 use racer::flight::mcap::tables;

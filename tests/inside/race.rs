@@ -140,8 +140,8 @@ fn rewards_by_hand() {
     assert_eq!(block.history[0][0].get(0), 0.2);
 }
 
-/// Starts lie inside the volume, on the side from which their gate is passed wherever they are near it, with finite states;
-/// the pad's are exactly the pad.
+/// Starts lie inside the volume, on the side from which their gate is passed wherever they are near it, with finite
+/// states; the pad's are exactly the pad.
 #[test]
 fn starts() {
     let (race, track) = race("");

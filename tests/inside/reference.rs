@@ -36,8 +36,8 @@ fn around_a_circle() {
     }
 }
 
-/// There and back through two gates that face each other's way: full thrust forward for half of the way, then backward; at rest at
-/// both ends.
+/// There and back through two gates that face each other's way: full thrust forward for half of the way, then backward;
+/// at rest at both ends.
 #[test]
 fn there_and_back_on_a_line() {
     let (thrust, way) = (20.0, 8.0);
@@ -114,8 +114,8 @@ fn the_lap_does_not_depend_on_the_effort() {
     }
 }
 
-/// An independent optimisation of this course, without drag, found 6.56 s at radius 0.4 m and 6.34 s at 0.6 m. Ours is to be as
-/// good, and not suspiciously better.
+/// An independent optimisation of this course, without drag, found 6.56 s at radius 0.4 m and 6.34 s at 0.6 m. Ours is
+/// to be as good, and not suspiciously better.
 #[test]
 fn close_to_laps_that_others_found() {
     let track = Track::load("a2rl_s2").unwrap();

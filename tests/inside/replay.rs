@@ -1,7 +1,8 @@
 //! What is shown of a flight: the page in a real browser, the MCAP file read by others.
 //!
-//! `RACER_BROWSER` names the browser (default: `chromium`, `chromium-browser` or `google-chrome`), `RACER_PYTHON` the interpreter.
-//! Where one is missing, its test says so and passes, unless `RACER_REQUIRE_BROWSER` or `RACER_REQUIRE_PYTHON` is set.
+//! `RACER_BROWSER` names the browser (default: `chromium`, `chromium-browser` or `google-chrome`), `RACER_PYTHON` the
+//! interpreter. Where one is missing, its test says so and passes, unless `RACER_REQUIRE_BROWSER` or
+//! `RACER_REQUIRE_PYTHON` is set.
 
 use crate::support::{python, skipped};
 use racer::base::lane::Level;
@@ -97,8 +98,8 @@ fn browsed(page: &str, script: &str) -> Option<String> {
     };
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("page.html");
-    // Errors of the page become part of it. Pictures come with the virtual time: the browser's own come when the machine has a screen
-    // and the leisure for it.
+    // Errors of the page become part of it. Pictures come with the virtual time: the browser's own come when the
+    // machine has a screen and the leisure for it.
     let caught = "<script>window.onerror = m => { document.documentElement.dataset.failed = m; };
         window.requestAnimationFrame = draw => setTimeout(() => draw(performance.now()), 16);</script>";
     let page = page.replacen("<body>", &format!("<body>{caught}"), 1);
@@ -129,8 +130,8 @@ fn the_page_plays_in_a_browser() {
     let text = page(&recorded(&log(&track), Some(&track)).unwrap());
     assert!(!text.contains("http"), "the page is to need nothing from elsewhere");
     assert!(text.contains("<title>led &lt;b>along"));
-    // Seconds forward, the camera above, how many colours the picture then has, and playing from the beginning. The page draws when
-    // the browser lets it: each step waits for the one before.
+    // Seconds forward, the camera above, how many colours the picture then has, and playing from the beginning. The
+    // page draws when the browser lets it: each step waits for the one before.
     let script = "
         const press = (key, shiftKey) => window.dispatchEvent(new KeyboardEvent('keydown', { key, shiftKey }));
         const note = document.body.dataset;

@@ -82,7 +82,8 @@ fn curve_error(vehicle: &truth::Vehicle, found: &Identification) -> f64 {
 
 #[test]
 fn a_random_vehicle_is_found_again() {
-    // The six coefficients of the thrust move together, so that one unlucky flight loses several: both flights are counted.
+    // The six coefficients of the thrust move together, so that one unlucky flight loses several: both flights are
+    // counted.
     let (mut inside, mut all) = (0, 0);
     for seed in [1, 2] {
         let (vehicle, found) = fly_and_identify(seed);
@@ -112,8 +113,8 @@ fn a_random_vehicle_is_found_again() {
     assert!(4 * inside >= 3 * all, "{inside} of {all} intervals hold");
 }
 
-/// `cargo test --test inside -- --ignored round_trip::write`: a log to try `racer identify` on, and the vehicle that flew
-/// it, in target/truth.
+/// `cargo test --test inside -- --ignored round_trip::write`: a log to try `racer identify` on, and the vehicle that
+/// flew it, in target/truth.
 #[test]
 #[ignore = "writes files"]
 fn write_a_log_and_its_vehicle() {

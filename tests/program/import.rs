@@ -8,7 +8,8 @@ use racer::flight::{self, Log, Options, Readable};
 use std::io::Write;
 use tempfile::TempDir;
 
-const MAPPING: &str = "time = { field = 't', unit = 'ms' }\n[imu]\ngyro = { fields = ['p', '-q', 'r'], unit = 'deg/s' }\n\
+const MAPPING: &str = "time = { field = 't', unit = 'ms' }\n\
+                       [imu]\ngyro = { fields = ['p', '-q', 'r'], unit = 'deg/s' }\n\
                        [battery]\nvoltage = { field = 'v', scale = 2.0, offset = 1.0, unit = 'mV' }\n";
 
 fn folder(files: &[(&str, &[u8])]) -> TempDir {
@@ -45,8 +46,10 @@ fn units_signs_offsets_and_time() {
 
 #[test]
 fn frames_are_turned() {
-    let mapping = "world = 'NED'\nbody = 'FRD'\ntime = { field = 't' }\n[odometry]\nposition = { fields = ['n', 'e', 'd'] }\n\
-                   attitude = { fields = ['w', 'x', 'y', 'z'] }\nvelocity = { fields = ['u', 'v', 's'] }\nvelocity_frame = 'world'\n";
+    let mapping = "world = 'NED'\nbody = 'FRD'\ntime = { field = 't' }\n\
+                   [odometry]\nposition = { fields = ['n', 'e', 'd'] }\n\
+                   attitude = { fields = ['w', 'x', 'y', 'z'] }\n\
+                   velocity = { fields = ['u', 'v', 's'] }\nvelocity_frame = 'world'\n";
     // Level, heading east, flying north-east and climbing: to the left and forward.
     let log =
         read("a.csv", b"t,n,e,d,w,x,y,z,u,v,s\n0,1,2,-3,0.7071067811865476,0,0,0.7071067811865476,4,5,-6\n", mapping)
@@ -128,8 +131,9 @@ fn a_file_beside_is_a_source() {
 
 #[test]
 fn columns_choose_the_mapping_or_what_there_is_is_said() {
-    let header = "t_s,angvel_x,angvel_y,angvel_z,qx,qy,qz,qw,acc_x,acc_y,acc_z,velbody_x,velbody_y,velbody_z,pos_x,pos_y,pos_z,\
-                  mot1_radps,mot2_radps,mot3_radps,mot4_radps,vbat_V\n0,0,0,0,0,0,0,1,0,0,9.8,1,0,0,0,0,0,1250,1250,1250,1250,16\n";
+    let header = "t_s,angvel_x,angvel_y,angvel_z,qx,qy,qz,qw,acc_x,acc_y,acc_z,velbody_x,velbody_y,velbody_z,\
+                  pos_x,pos_y,pos_z,mot1_radps,mot2_radps,mot3_radps,mot4_radps,vbat_V\n\
+                  0,0,0,0,0,0,0,1,0,0,9.8,1,0,0,0,0,0,1250,1250,1250,1250,16\n";
     let folder = folder(&[("a.csv", header.as_bytes()), ("b.csv", b"t_s,x\n0,1\n")]);
     let Opened { log, mapping, remarks } = flight::open_with(&folder.path().join("a.csv"), Options::default()).unwrap();
     assert_eq!((mapping.as_str(), log.setpoint.rows[0][3]), ("neurobem", 0.5));
@@ -154,7 +158,8 @@ fn blackbox(frames: &[u8]) -> Vec<u8> {
     [header.as_bytes(), frames].concat()
 }
 
-/// An intra frame at 100 us with 90 deg/s, half throttle and 16 V; an inter frame 100 us later with one deg/s more; the end.
+/// An intra frame at 100 us with 90 deg/s, half throttle and 16 V; an inter frame 100 us later with one deg/s more; the
+/// end.
 const FRAMES: &[u8] = &[
     b'I', 0, 100, 0xb4, 1, 0xf4, 3, 0xc0, 0x0c, b'P', 0xc8, 1, 2, 0, 0, b'E', 255, b'E', b'n', b'd', b' ', b'o', b'f',
     b' ', b'l', b'o', b'g', 0,
@@ -202,7 +207,8 @@ fn ulog() -> Vec<u8> {
     let mut bytes = b"ULog\x01\x12\x35\x01\0\0\0\0\0\0\0\0".to_vec();
     bytes.extend(message(b'B', &[0; 40]));
     for format in [
-        "vehicle_rates_setpoint:uint64_t timestamp;float roll;float pitch;float yaw;float[3] thrust_body;uint8_t[4] _padding0;",
+        "vehicle_rates_setpoint:uint64_t timestamp;float roll;float pitch;float yaw;float[3] thrust_body;\
+         uint8_t[4] _padding0;",
         "vehicle_attitude:uint64_t timestamp;float[4] q;",
         "vehicle_local_position:uint64_t timestamp;float x;float y;float z;float vx;float vy;float vz;",
     ] {

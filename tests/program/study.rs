@@ -1,5 +1,5 @@
-//! Studies as a user meets them: what a file spans, what is refused before anything starts, and that interruptions leave no
-//! trace in the tables.
+//! Studies as a user meets them: what a file spans, what is refused before anything starts, and that interruptions
+//! leave no trace in the tables.
 
 use crate::support::racer;
 use racer::base::check::BadInput;
@@ -162,8 +162,8 @@ fn a_bad_study_starts_nothing() {
     assert_eq!(std::fs::read_dir(folder.path().join("full")).unwrap().count(), 1);
 }
 
-/// Shards make disjoint parts, the parts make the whole, and any process makes the same tables of it; so does a study whose
-/// process was killed, without making a finished run again.
+/// Shards make disjoint parts, the parts make the whole, and any process makes the same tables of it; so does a study
+/// whose process was killed, without making a finished run again.
 #[test]
 fn shards_and_kills_leave_the_same_tables() {
     let folder = with_study(TINY);

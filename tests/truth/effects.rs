@@ -1,7 +1,7 @@
 //! What can be hidden in a flight: the truth that a diagnosis is scored against.
 //!
-//! Identifiers, equations and sizes of the matched form are the catalogue's; every effect is null at size 0 unless it replaces a
-//! part of the model (second order, slew limit, asymmetric lag).
+//! Identifiers, equations and sizes of the matched form are the catalogue's; every effect is null at size 0 unless it
+//! replaces a part of the model (second order, slew limit, asymmetric lag).
 
 pub mod catalogue;
 pub mod outside;
@@ -89,8 +89,8 @@ impl Hidden {
     }
 }
 
-/// Ten effects of at most 0.4 times the catalogue's smallest size, and after them a dominant one: something that moves the vehicle,
-/// of the stronger half of its sizes.
+/// Ten effects of at most 0.4 times the catalogue's smallest size, and after them a dominant one: something that moves
+/// the vehicle, of the stronger half of its sizes.
 pub fn clutter(vehicle: &Vehicle, rng: &mut StdRng) -> Vec<Hidden> {
     let moving: Vec<_> = CATALOGUE.iter().filter(|e| e.dominates()).collect();
     let dominant = moving[rng.random_range(0..moving.len())];
@@ -112,7 +112,8 @@ pub fn clutter(vehicle: &Vehicle, rng: &mut StdRng) -> Vec<Hidden> {
     drawn
 }
 
-/// `vehicle` with time constants of the rates, maximum rates or thrust moved by 10 to 30 %: a base parameter that drifted.
+/// `vehicle` with time constants of the rates, maximum rates or thrust moved by 10 to 30 %: a base parameter that
+/// drifted.
 pub fn drifted(vehicle: &Vehicle, rng: &mut StdRng) -> Vehicle {
     let mut moved = vehicle.clone();
     let sign = if rng.random_bool(0.5) { -1.0 } else { 1.0 };

@@ -1,6 +1,7 @@
 //! Flights with something hidden in them: the simulator with every term of [`effects::terms`](super::effects::terms).
 //!
-//! pilot -> [`link`] -> [`inner`] or [`motors`] -> [`thrust`], [`battery`], [`air`] -> [`motion`] -> [`sense`], each in its file.
+//! pilot -> [`link`] -> [`inner`] or [`motors`] -> [`thrust`], [`battery`], [`air`] -> [`motion`] -> [`sense`], each in
+//! its file.
 
 pub mod air;
 pub mod battery;

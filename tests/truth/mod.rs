@@ -1,5 +1,5 @@
-//! An independent simulator: makes flight logs whose truth is known. It shares no equation with the crate; from there it
-//! takes only the type of a log and, as the human at the sticks, the pilot.
+//! An independent simulator: makes flight logs whose truth is known. It shares no equation with the crate; from there
+//! it takes only the type of a log and, as the human at the sticks, the pilot.
 //!
 //! [`hidden`] is the same with effects that a diagnosis is to find ([`effects`]).
 //!
@@ -85,7 +85,8 @@ pub fn record(
         log.setpoint.push(time, [command[0] * x, command[1] * y, command[2] * z, 0.5 + 0.5 * command[3]]);
         for k in 0..STEPS {
             let now = time + k as f64 * dt;
-            // A straight line between two steps would look like another time constant, by more than the fit's own error.
+            // A straight line between two steps would look like another time constant, by more than the fit's own
+            // error.
             sensors.sense(now, dt, &|due| step(&state, vehicle, command, due - now), vehicle, &mut log);
             state = step(&state, vehicle, command, dt);
         }

@@ -54,7 +54,8 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Draws rates, phases and constant errors; `scale` multiplies all errors, and none leaves out quantisation as well.
+    /// Draws rates, phases and constant errors; `scale` multiplies all errors, and none leaves out quantisation as
+    /// well.
     pub fn new(seed: u64, scale: f64) -> Self {
         let mut rng = StdRng::seed_from_u64(seed ^ 0x5e4505);
         let (odometry, battery) = (rng.random_range(100.0..200.0_f64), rng.random_range(10.0..50.0_f64));

@@ -7,8 +7,8 @@ use crate::flight::table::Tables;
 use crate::flight::{Log, Stream, VehicleRecord};
 
 impl Mapping {
-    /// Reads the log that `tables`, of the file `name`, hold. Times are from the earliest of all streams on; rows without
-    /// any value are left out. Fails where a source or a column is missing, naming the nearest.
+    /// Reads the log that `tables`, of the file `name`, hold. Times are from the earliest of all streams on; rows
+    /// without any value are left out. Fails where a source or a column is missing, naming the nearest.
     pub fn apply(&self, tables: &Tables, name: &str) -> Result<Log, BadInput> {
         let sources = Sources { mapping: self, tables, name };
         let mut log = Log {

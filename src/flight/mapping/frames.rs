@@ -103,7 +103,8 @@ mod tests {
 
     #[test]
     fn north_east_down() {
-        // Level and heading north: the identity from FRD to NED, a quarter turn left from FLU to ENU (q and -q are one).
+        // Level and heading north: the identity from FRD to NED, a quarter turn left from FLU to ENU (q and -q are
+        // one).
         close(attitude([1.0, 0.0, 0.0, 0.0], Body::Frd, World::Ned), [-S, 0.0, 0.0, -S]);
         close(World::Ned.to_enu([1.0, 2.0, 3.0]), [2.0, 1.0, -3.0]);
         close(Body::Frd.to_flu([1.0, 2.0, 3.0]), [1.0, -2.0, -3.0]);

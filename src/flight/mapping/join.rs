@@ -12,8 +12,8 @@ pub struct Between {
     pub share: f64,
 }
 
-/// The neighbours in `stamps` of each of the `wanted` times; `None` outside and within gaps. Rows of `stamps` that are out
-/// of order, or without a time, are passed over.
+/// The neighbours in `stamps` of each of the `wanted` times; `None` outside and within gaps. Rows of `stamps` that are
+/// out of order, or without a time, are passed over.
 pub fn between(stamps: &[f64], wanted: &[f64]) -> Vec<Option<Between>> {
     let mut order: Vec<usize> = (0..stamps.len()).filter(|&i| stamps[i].is_finite()).collect();
     order.sort_by(|&a, &b| stamps[a].total_cmp(&stamps[b]));

@@ -26,7 +26,11 @@ macro_rules! units {
     };
 }
 
-units!(AngularRate: #[default] RadS = "rad/s" = 1.0, DegS = "deg/s" = 1f64.to_radians(), Rpm = "rpm" = std::f64::consts::TAU / 60.0);
+units!(
+    AngularRate: #[default] RadS = "rad/s" = 1.0,
+    DegS = "deg/s" = 1f64.to_radians(),
+    Rpm = "rpm" = std::f64::consts::TAU / 60.0
+);
 units!(Acceleration: #[default] MS2 = "m/s2" = 1.0, G = "g" = 9.80665);
 units!(Length: #[default] M = "m" = 1.0, Cm = "cm" = 1e-2, Mm = "mm" = 1e-3);
 units!(Speed: #[default] MS = "m/s" = 1.0, CmS = "cm/s" = 1e-2, MmS = "mm/s" = 1e-3, KmH = "km/h" = 1.0 / 3.6);

@@ -3,7 +3,8 @@
 use super::column::Columns;
 use super::{cdr, idl, json, msg, protobuf};
 
-/// Larger messages and schemas are not those of a vehicle's measurements; what decodes them would take many times their size.
+/// Larger messages and schemas are not those of a vehicle's measurements; what decodes them would take many times their
+/// size.
 const BYTES: usize = 1 << 20;
 
 /// A schema record, kept.

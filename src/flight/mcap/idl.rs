@@ -1,4 +1,5 @@
-//! `ros2idl` schemas: the `.idl` files of a message and of the types it uses, in the part of OMG IDL that ROS 2 generates.
+//! `ros2idl` schemas: the `.idl` files of a message and of the types it uses, in the part of OMG IDL that ROS 2
+//! generates.
 
 use super::idl_token::{Token, tokens};
 use super::schema::{CdrSchema, Definition, Fields, Type};

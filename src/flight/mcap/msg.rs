@@ -1,7 +1,7 @@
 //! `ros2msg` schemas: the `.msg` files of a message and of the types it uses, one after the other.
 //!
-//! Own code, because the crate that reads them panics on some defaults and refuses messages for constants it cannot read,
-//! which a decoder does not need.
+//! Own code, because the crate that reads them panics on some defaults and refuses messages for constants it cannot
+//! read, which a decoder does not need.
 
 use super::schema::{CdrSchema, Definition, Fields, Type};
 use crate::flight::number::Number;
@@ -78,8 +78,9 @@ mod tests {
 
     #[test]
     fn fields_constants_and_defaults() {
-        let text = "uint8 FOO=0x10 # hex\nbool enabled true\nstring<=4 s \"\nPart[<=2] parts\nfloat32[3] xyz [0, 0, 1]\n\
-                    builtin_interfaces/Time stamp\n===\nMSG: p/Part\nint8 a\n================\nMSG: p/msg/Unused\nwstring w";
+        let text = "uint8 FOO=0x10 # hex\nbool enabled true\nstring<=4 s \"\nPart[<=2] parts\n\
+                    float32[3] xyz [0, 0, 1]\nbuiltin_interfaces/Time stamp\n===\nMSG: p/Part\nint8 a\n\
+                    ================\nMSG: p/msg/Unused\nwstring w";
         let schema = schema("p/msg/Root", text).unwrap();
         let Type::Struct(root) = schema.root else { panic!("{schema:?}") };
         let names: Vec<_> = schema.structs[root].iter().map(|(name, _)| name.as_str()).collect();

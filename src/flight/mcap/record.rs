@@ -1,6 +1,7 @@
 //! The records of an MCAP file that matter here, as <https://mcap.dev/spec> lays them out.
 //!
-//! The `mcap` crate writes files but does not read them here: on hostile lengths it panics, or allocates what they ask for.
+//! The `mcap` crate writes files but does not read them here: on hostile lengths it panics, or allocates what they ask
+//! for.
 
 use super::bytes::Bytes;
 use ::mcap::records::op;

@@ -1,4 +1,5 @@
-//! All that can be hidden, as the numbers that the equations of motion and the sensors use. Nothing is hidden by default.
+//! All that can be hidden, as the numbers that the equations of motion and the sensors use. Nothing is hidden by
+//! default.
 
 use super::Hidden;
 use nalgebra::Vector3;

@@ -25,8 +25,8 @@ pub const KINDS: [&str; 9] = [
 pub fn draw(kind: &str, vehicle: &Vehicle, rng: &mut StdRng) -> Hidden {
     let pack = vehicle.full_v / 25.0;
     match kind {
-        // Motors of first order under a rate controller with filters: stiffness and damping of the loop, 1/s and s, and the
-        // acceleration (rad/s2) that opposite motors at full difference give.
+        // Motors of first order under a rate controller with filters: stiffness and damping of the loop, 1/s and s, and
+        // the acceleration (rad/s2) that opposite motors at full difference give.
         "motor_loop" | "motor_saturation" => {
             let stiff = rng.random_range(55.0..90.0);
             let saturates = kind == "motor_saturation";
@@ -50,7 +50,8 @@ pub fn draw(kind: &str, vehicle: &Vehicle, rng: &mut StdRng) -> Hidden {
             let size = log_range(rng, 0.1, 0.6);
             Hidden::beyond(kind, size, &["rotor_drag"], &[("k", size)])
         }
-        // Resistance and one resistor-capacitor pair, load with thrust to the power of 1.5; charge is what the current took.
+        // Resistance and one resistor-capacitor pair, load with thrust to the power of 1.5; charge is what the current
+        // took.
         "cell_circuit" => {
             let [at_once, later] = [log_range(rng, 1.2, 3.0) * pack, log_range(rng, 0.5, 1.5) * pack];
             let secret = [("at_once", at_once), ("later", later), ("tau", log_range(rng, 3.0, 30.0))];
