@@ -8,8 +8,8 @@ use racer::{Error, Motion, Setup, Simulation, StartPlace, Vehicle};
 /// Speed that the controller keeps, m/s.
 const SPEED: f64 = 3.0;
 
-/// Flies `vehicle` through a gate: the wanted velocity asks for an acceleration, that for a direction of thrust, and that
-/// for body rates.
+/// Flies `vehicle` through a gate: the wanted velocity asks for an acceleration, that for a
+/// direction of thrust, and that for body rates.
 fn fly_through(gate: &Gate, at: &Motion, vehicle: &Vehicle) -> [f32; 4] {
     let (sin, cos) = gate.heading_deg.to_radians().sin_cos();
     let beyond = [0.3 * cos, 0.3 * sin, 0.0];

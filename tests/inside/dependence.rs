@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// A few seconds in which everything moves.
 fn short() -> Problem {
     let vehicle = Vehicle::draw(51);
-    let setting = Setting { seed: 51, seconds: 8.0, noise: 1.0, imu_hz: 200.0, style: Style::Excited };
+    let setting = Setting { seed: 51, seconds: 10.0, noise: 1.0, imu_hz: 200.0, style: Style::Race };
     let log = fly(&vehicle, &[], &setting);
     racer::insight::diagnose::problem(vec![check(&log)], &vehicle.in_racer())
 }

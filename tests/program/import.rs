@@ -290,13 +290,15 @@ proptest! {
     }
 
     #[test]
-    fn hostile_frames(frames in prop::collection::vec(prop_oneof![Just(b'I'), Just(b'P'), Just(0xff), any::<u8>()], 0..2000)) {
+    fn hostile_frames(
+        frames in prop::collection::vec(prop_oneof![Just(b'I'), Just(b'P'), Just(0xff), any::<u8>()], 0..2000)
+    ) {
         let _ = open_bytes("a.bbl", &blackbox(&frames), Options::default());
     }
 }
 
-/// Commands and voltages. The CSV is of a decoder that predicted averages, gyro and acceleration, from the wrong frames;
-/// blackbox_decode is what those are compared with.
+/// Commands and voltages. The CSV is of a decoder that predicted averages, gyro and acceleration,
+/// from the wrong frames; blackbox_decode is what those are compared with.
 #[test]
 fn raw_blackbox_decodes_to_the_commands_and_voltages_of_its_csv() {
     let (Some(raw), Some(csv)) =

@@ -60,7 +60,8 @@ impl Predicted {
     }
 
     fn recomputed(self, dirty: Quantities, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
-        // One body for every processor: a fused multiply-add is an instruction there, and a call of a function elsewhere.
+        // One body for every processor: a fused multiply-add is an instruction there, and a call of
+        // a function elsewhere.
         fused(
             #[inline(always)]
             || self.recompute(dirty, model, record, flight, x),
