@@ -173,7 +173,7 @@ fn bad_input_is_refused_before_any_work() {
         (&["fly", "--pilot", "--sensors", "idael", "--out", "log.mcap"], &["sensors `idael`", "`ideal`"]),
         (&["fly", "--pilot", "--vehicle", "kite", "--out", "log.mcap"], &["vehicle `kite`"]),
         (&["fly", "--pilot", "--manoeuvres", "punhc", "--out", "log.mcap"], &["punhc", "`punch`"]),
-        (&["fly", "--pilot", "--seconds", "5", "--out", "log.mcap"], &["--seconds", "40 s"]),
+        (&["fly", "--pilot", "--seconds", "5", "--out", "log.mcap"], &["--seconds", "40 to 3600 s"]),
         (&["fly", "--pilot", "--seconds", "-5", "--out", "log.mcap"], &["--seconds", "0.1 to 3600"]),
     ] {
         let ran = racer(folder.path(), args);
