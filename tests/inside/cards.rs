@@ -30,6 +30,9 @@ fn four(v: &[f64]) -> [f64; 4] {
     [v[0], v[1], v[2], v[3]]
 }
 
+/// Fields of a stage, and the stage itself over their numbers.
+type StageRow = (Vec<Vec<Field>>, fn(&[f64], &mut [f64]));
+
 /// All stages, each as a row of numbers.
 fn passages() -> Vec<Passage> {
     use Quantity::*;
@@ -97,7 +100,7 @@ fn passages() -> Vec<Passage> {
         v[..3].copy_from_slice(&s.rates);
         v[6..9].copy_from_slice(&s.force);
     };
-    let rows: Vec<(Vec<Vec<Field>>, fn(&[f64], &mut [f64]))> = vec![
+    let rows: Vec<StageRow> = vec![
         (vec![own(RateCommand, 2), own(ThrustCommand, 1)], command_delay),
         (
             vec![own(RateCommand, 3), own(ThrustCommand, 1), input(ThrustCommand, 1), input(RateCommand, 3), fixed(7)],
