@@ -6,12 +6,13 @@ use super::inverse::inverse;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Covariance of the numbers whose columns are `own`, from the products with the column `residual`, by leaving out
-/// `size` stretches of time after the other (the cluster jackknife, CR3): without a group, the values would move by
-/// `(H - H_g)^-1 U_g`, with H the normal equations and U the gradient. Unlike the sum of U U' alone it stays honest where
-/// few groups, such as the few yaw steps of a flight, hold most of what is known. With the number of groups that held
-/// anything. `None` where all together do not tell the numbers. Cameron and Miller, "A Practitioner's Guide to
-/// Cluster-Robust Inference", J. Hum. Resour. 50, 2015.
+/// Covariance of the numbers whose columns are `own`, from the products with the column `residual`,
+/// by leaving out `size` stretches of time after the other (the cluster jackknife, CR3): without a
+/// group, the values would move by `(H - H_g)^-1 U_g`, with H the normal equations and U the
+/// gradient. Unlike the sum of U U' alone it stays honest where few groups, such as the few yaw
+/// steps of a flight, hold most of what is known. With the number of groups that held anything.
+/// `None` where all together do not tell the numbers. Cameron and Miller, "A Practitioner's Guide
+/// to Cluster-Robust Inference", J. Hum. Resour. 50, 2015.
 pub fn jackknife(
     grams: &Grams,
     own: &[usize],
