@@ -9,6 +9,7 @@ mod format;
 pub mod lowpass;
 pub mod mapping;
 pub mod mcap;
+pub mod motors;
 mod number;
 pub mod open;
 pub mod pilot;
@@ -18,9 +19,12 @@ pub mod spans;
 pub mod table;
 mod ulog;
 mod ulog_format;
+pub mod vehicle;
 pub mod write;
 
+pub use motors::MOTORS;
 pub use open::{Options, open, open_with};
+pub use vehicle::{VehicleKind, VehicleRecord};
 
 /// Numbers over time: row i was measured at `time_s[i]`. NaN stands for what was not measured.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -69,22 +73,16 @@ pub struct Log {
     pub odometry: Stream<10>,
     /// Voltage (V) and current (A).
     pub battery: Stream<2>,
-    /// Rotor speeds, rad/s.
-    pub rotors: Stream<4>,
+    /// Rotor speeds, rad/s; NaN beyond the rotors that the vehicle has.
+    pub rotors: Stream<MOTORS>,
+    /// What each motor was sent, as a share of the full command, 0..1; NaN beyond the motors that the vehicle has.
+    pub motors: Stream<MOTORS>,
+    /// Armed, and in the air: 1 or 0 from that time on until the next row; NaN where the log does not say.
+    pub states: Stream<2>,
     /// What the file says about the vehicle.
     pub vehicle: VehicleRecord,
     /// What of the file could be read.
     pub readable: Readable,
-}
-
-/// What a log says about the vehicle that flew it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct VehicleRecord {
-    /// Mass, kg.
-    pub mass_kg: Option<f64>,
-    /// Body rates that a full stick asks for: roll, pitch, yaw, rad/s.
-    pub max_rate_rad_s: Option<[f64; 3]>,
 }
 
 /// How much of a file could be read.

@@ -97,7 +97,7 @@ pub mod score {
 /// The parts of a flight log, of its sensors, and of its check.
 pub mod log {
     pub use crate::flight::sensors::{Channel, Imu, Odometry, Turn, Voltmeter};
-    pub use crate::flight::{Readable, Stream, VehicleRecord};
+    pub use crate::flight::{Readable, Stream, VehicleKind, VehicleRecord};
     pub use crate::insight::quality::{LogFinding, ParameterCoverage, StreamSummary};
 }
 

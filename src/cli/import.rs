@@ -2,7 +2,7 @@
 
 use super::{CommandEnd, columns, tell};
 use crate::base::fsio::Reserved;
-use crate::flight::{self, Log, Options, Readable, Stream};
+use crate::flight::{self, Log, MOTORS, Options, Readable, Stream};
 use std::path::PathBuf;
 
 /// Convert a flight log to the canonical form: MCAP with ROS 2 messages
@@ -53,7 +53,12 @@ A mapping names the columns of each stream; leave out what a log lacks:
   voltage = { field = \"vbat\", unit = \"mV\" }
   current = { field = \"amps\" }
   [rotors]
-  speed = { fields = [\"n0\", \"n1\", \"n2\", \"n3\"], unit = \"rpm\" }
+  speed = { fields = [\"n0\", \"n1\", \"n2\", \"n3\"], unit = \"rpm\" }   # 1 to 8; \"n4?\": a file may lack it
+  [motors]
+  command = { fields = [\"m0\", \"m1\", \"m2\", \"m3\"], scale = [0.001], offset = [-1, -1, -1, -1] }   # 0..1
+  [states]
+  armed = { field = \"arming\", equals = [2] }   # leave equals out for any number but 0
+  in_air = { field = \"landed\", equals = [0] }
   [vehicle]                        # for files that do not say
   mass_kg = 0.8
   max_rate_deg_s = [670, 670, 400]
@@ -86,13 +91,18 @@ fn found(log: &Log) -> String {
         row("imu", &log.imu, &[("gyro", 0..3), ("specific force", 3..6)]),
         row("odometry", &log.odometry, &[("position", 0..3), ("attitude", 3..7), ("velocity", 7..10)]),
         row("battery", &log.battery, &[("voltage", 0..1), ("current", 1..2)]),
-        row("rotors", &log.rotors, &[("speed", 0..4)]),
+        row("rotors", &log.rotors, &[("speed", 0..MOTORS)]),
+        row("motors", &log.motors, &[("command", 0..MOTORS)]),
+        row("states", &log.states, &[("armed", 0..1), ("in the air", 1..2)]),
     ];
     let table = columns::table(&["stream", "rows", "rate, Hz", "from, s", "to, s", "lacks"], rows, 1..5);
     let show = |value: Option<String>| value.unwrap_or("unknown".into());
     let mass = show(log.vehicle.mass_kg.map(|mass| format!("{mass} kg")));
     let rates = show(log.vehicle.max_rate_rad_s.map(|rates| format!("{:.0?} deg/s", rates.map(f64::to_degrees))));
-    format!("{table}\nmass {mass}, full-stick rates {rates}")
+    let kind = show(log.vehicle.kind.map(|kind| kind.name().replace('_', " ")));
+    let counts = [("rotors", log.rotors.count()), ("motors", log.motors.count())];
+    let of = counts.iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!(", {name} of {n}")).collect::<String>();
+    format!("{table}\nmass {mass}, full-stick rates {rates}, vehicle {kind}{of}")
 }
 
 fn row<const N: usize>(name: &str, stream: &Stream<N>, parts: &[(&str, std::ops::Range<usize>)]) -> Vec<String> {

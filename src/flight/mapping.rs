@@ -6,15 +6,17 @@ mod join;
 mod parts;
 mod quantity;
 mod source;
+mod states;
 mod streams;
 mod units;
 
 pub use frames::{Body, VelocityFrame, World};
-pub use parts::{Battery, Imu, Odometry, Rotors, Setpoint};
+pub use parts::{Battery, Imu, Motors, Odometry, Rotors, Setpoint, States};
 pub use quantity::Time;
 
 use crate::base::check::{BadInput, Check, Invalid};
 use crate::base::document::Library;
+use crate::flight::{MOTORS, VehicleKind};
 use parts::Part;
 use serde::Deserialize;
 use std::collections::BTreeSet;
@@ -50,6 +52,8 @@ pub struct Mapping {
     pub odometry: Option<Odometry>,
     pub battery: Option<Battery>,
     pub rotors: Option<Rotors>,
+    pub motors: Option<Motors>,
+    pub states: Option<States>,
     /// For files that do not say; what the file says wins.
     #[serde(default)]
     pub vehicle: VehicleFigures,
@@ -61,6 +65,9 @@ pub struct VehicleFigures {
     pub mass_kg: Option<f64>,
     /// Body rates that a full stick asks for: roll, pitch, yaw.
     pub max_rate_deg_s: Option<[f64; 3]>,
+    pub kind: Option<VehicleKind>,
+    /// How many rotors carry it.
+    pub rotors: Option<u8>,
 }
 
 impl Mapping {
@@ -86,6 +93,17 @@ impl Mapping {
 
     /// All columns that may be read, each with its topic or table.
     pub fn columns(&self) -> BTreeSet<(&str, &str)> {
+        self.fields().into_iter().map(|(source, field)| (source, quantity::column(field))).collect()
+    }
+
+    /// Those of them that a file may not lack.
+    pub fn required(&self) -> BTreeSet<(&str, &str)> {
+        let fields = self.fields().into_iter().filter(|(_, field)| !quantity::optional(field));
+        fields.map(|(source, field)| (source, quantity::column(field))).collect()
+    }
+
+    /// All fields, as the mapping names them, each with its topic or table.
+    fn fields(&self) -> BTreeSet<(&str, &str)> {
         let mut columns = BTreeSet::new();
         let time = self.time.as_ref();
         chain(&self.setpoint, time, &mut columns);
@@ -93,6 +111,8 @@ impl Mapping {
         chain(&self.odometry, time, &mut columns);
         chain(&self.battery, time, &mut columns);
         chain(&self.rotors, time, &mut columns);
+        chain(&self.motors, time, &mut columns);
+        chain(&self.states, time, &mut columns);
         columns
     }
 }
@@ -114,15 +134,24 @@ impl Check for Mapping {
             || self.imu.is_some()
             || self.odometry.is_some()
             || self.battery.is_some()
-            || self.rotors.is_some();
-        Invalid::unless(some, "", "no stream", "one of [setpoint], [imu], [odometry], [battery], [rotors]", "")?;
+            || self.rotors.is_some()
+            || self.motors.is_some()
+            || self.states.is_some();
+        let expected = "one of [setpoint], [imu], [odometry], [battery], [rotors], [motors], [states]";
+        Invalid::unless(some, "", "no stream", expected, "")?;
         check("setpoint", &self.setpoint)?;
         check("imu", &self.imu)?;
         check("odometry", &self.odometry)?;
         check("battery", &self.battery)?;
         check("rotors", &self.rotors)?;
+        check("motors", &self.motors)?;
+        check("states", &self.states)?;
         if let Some(mass) = self.vehicle.mass_kg {
             Invalid::unless_positive("vehicle.mass_kg", mass, "leave it out where it is not known")?;
+        }
+        if let Some(rotors) = self.vehicle.rotors {
+            let expected = format!("1 to {MOTORS}");
+            Invalid::unless((1..=MOTORS).contains(&rotors.into()), "vehicle.rotors", rotors, &expected, "")?;
         }
         for rate in self.vehicle.max_rate_deg_s.into_iter().flatten() {
             Invalid::unless_positive("vehicle.max_rate_deg_s", rate, "leave it out where it is not known")?;

@@ -33,12 +33,16 @@ pub fn mcap(log: &Log) -> Result<Vec<u8>> {
     if log.vehicle != VehicleRecord::default() {
         file.write_metadata(&metadata(&log.vehicle)).map_err(failed)?;
     }
+    let [armed, in_air] = [0, 1].map(|k| said(&log.states, k));
     let mut queues = [
         queue(&mut file, log, topic::SETPOINT, message::BODY, &log.setpoint, message::attitude_target)?,
         queue(&mut file, log, topic::IMU, message::BODY, &log.imu, message::imu)?,
         queue(&mut file, log, topic::ODOMETRY, message::WORLD, &log.odometry, message::odometry)?,
         queue(&mut file, log, topic::BATTERY, message::BODY, &log.battery, message::battery_state)?,
-        queue(&mut file, log, topic::ROTORS, message::BODY, &log.rotors, message::joint_state)?,
+        queue(&mut file, log, topic::ROTORS, message::BODY, &log.rotors, message::joint_state(log.rotors.count()))?,
+        queue(&mut file, log, topic::MOTORS, message::BODY, &log.motors, message::actuators(log.motors.count()))?,
+        queue(&mut file, log, topic::STATE, message::BODY, &armed, message::state)?,
+        queue(&mut file, log, topic::EXTENDED_STATE, message::BODY, &in_air, message::extended_state)?,
     ];
     while let Some(queue) = queues.iter_mut().filter(|queue| queue.first().is_some()).min_by_key(|queue| queue.first())
     {
@@ -57,7 +61,18 @@ fn metadata(record: &VehicleRecord) -> Metadata {
     let mut metadata = BTreeMap::from([(vehicle::THRUST_MAP.to_string(), vehicle::THRUST.to_string())]);
     metadata.extend(record.mass_kg.map(|mass| (vehicle::MASS.to_string(), mass.to_string())));
     metadata.extend(record.max_rate_rad_s.map(|rate| (vehicle::MAX_RATE.to_string(), format!("{rate:?}"))));
+    metadata.extend(record.kind.map(|kind| (vehicle::KIND.to_string(), kind.name().to_string())));
+    metadata.extend(record.rotors.map(|rotors| (vehicle::ROTORS.to_string(), rotors.to_string())));
     Metadata { name: vehicle::NAME.into(), metadata }
+}
+
+/// One of the states, where it is known.
+fn said(states: &Stream<2>, k: usize) -> Stream<1> {
+    let mut said = Stream::default();
+    for (&time_s, row) in states.time_s.iter().zip(&states.rows).filter(|(_, row)| row[k].is_finite()) {
+        said.push(time_s, [row[k]]);
+    }
+    said
 }
 
 /// Serializes the message of a row.
@@ -79,7 +94,7 @@ fn queue<'l, const N: usize>(
     topic: Topic,
     frame: &'static str,
     stream: &'l Stream<N>,
-    message: fn(&mut Cdr, [f64; N]),
+    message: impl Fn(&mut Cdr, [f64; N]) + 'l,
 ) -> Result<Queue<'l>> {
     let times_ns = stream.time_s.iter().map(|&time_s| stamp_ns(log.start_ns, time_s));
     let times_ns = times_ns.collect::<Option<Vec<_>>>();

@@ -3,9 +3,11 @@
 mod foreign;
 mod hostile;
 
+use racer::flight::mapping::Mapping;
 use racer::flight::mcap::{tables, topics};
+use racer::flight::motors::row;
 use racer::flight::table::{LOG_TIME, Table};
-use racer::flight::{Log, Readable, Stream, VehicleRecord, write};
+use racer::flight::{Log, MOTORS, Readable, Stream, VehicleKind, VehicleRecord, write};
 use std::time::Instant;
 
 /// A log with `n` IMU samples, and fewer of the others.
@@ -23,10 +25,22 @@ fn log(n: usize) -> Log {
         imu: stream(n, 0.002),
         odometry: stream(n * 4 / 5, 0.0025),
         battery: stream(n / 100, 0.2),
-        rotors: stream(n / 5, 0.01),
-        vehicle: VehicleRecord { mass_kg: Some(0.75), max_rate_rad_s: Some([11.5, 12.0, 6.25]) },
+        rotors: of_four(stream(n / 5, 0.01)),
+        motors: of_four(stream(n / 5, 0.01)),
+        states: Stream { time_s: vec![0.0, 1.0, 1.5], rows: vec![[1.0, f64::NAN], [1.0, 1.0], [0.0, 0.0]] },
+        vehicle: VehicleRecord {
+            mass_kg: Some(0.75),
+            max_rate_rad_s: Some([11.5, 12.0, 6.25]),
+            kind: Some(VehicleKind::FixedWing),
+            rotors: Some(4),
+        },
         ..Log::default()
     }
+}
+
+/// Of a vehicle with four rotors.
+fn of_four(stream: Stream<4>) -> Stream<MOTORS> {
+    Stream { time_s: stream.time_s, rows: stream.rows.iter().map(|numbers| row(numbers)).collect() }
 }
 
 fn columns<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64; N]> {
@@ -73,7 +87,10 @@ fn what_was_written_is_read() {
     let t = &read.tables;
     assert_eq!(columns(&t["/imu"], IMU), log.imu.rows);
     assert_eq!(columns(&t["/odom"], ODOMETRY), log.odometry.rows);
-    assert_eq!(columns(&t["/rotors"], ROTORS), log.rotors.rows);
+    assert_eq!(
+        columns(&t["/rotors"], ROTORS),
+        log.rotors.rows.iter().map(|row| row[..4].try_into().unwrap()).collect::<Vec<[f64; 4]>>()
+    );
     assert_close(&columns(&t["/setpoint"], SETPOINT), &log.setpoint.rows);
     assert_close(&columns(&t["/battery"], ["voltage", "current"]), &log.battery.rows);
     for (time, expected) in t["/imu"].columns["header.stamp"].iter().zip(&log.imu.time_s) {
@@ -81,6 +98,21 @@ fn what_was_written_is_read() {
     }
     assert_eq!(t["/imu"].columns["header.stamp"], t["/imu"].columns[LOG_TIME]);
     assert_eq!(t["/imu"].columns["orientation_covariance[0]"][0], -1.0);
+}
+
+#[test]
+fn motors_rotors_and_states_come_back() {
+    let log = log(1000);
+    let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| a == b || a.is_nan() && b.is_nan());
+    let tables = tables(&write::mcap(&log).unwrap(), &|_| true).unwrap();
+    let read = Mapping::load("canonical").unwrap().apply(&tables, "a").unwrap();
+    assert_eq!((read.rotors.count(), read.motors.count(), read.states.len()), (4, 4, 3));
+    for (found, written) in [(&read.rotors, &log.rotors), (&read.motors, &log.motors)] {
+        assert_eq!(found.len(), written.len());
+        assert!(found.rows.iter().zip(&written.rows).all(|(a, b)| same(a, b)));
+    }
+    assert!(read.states.rows.iter().zip(&log.states.rows).all(|(a, b)| same(a, b)), "{:?}", read.states.rows);
+    assert_eq!(read.vehicle, log.vehicle);
 }
 
 #[test]
@@ -113,8 +145,8 @@ fn topics_are_listed_and_only_wanted_ones_read() {
     let bytes = write::mcap(&log(200)).unwrap();
     let topics = topics(&bytes).unwrap();
     let names: Vec<_> = topics.iter().map(|topic| topic.name.as_str()).collect();
-    assert_eq!(names, ["/battery", "/imu", "/odom", "/rotors", "/setpoint"]);
-    let imu = &topics[1];
+    assert_eq!(names, ["/battery", "/extended_state", "/imu", "/motors", "/odom", "/rotors", "/setpoint", "/state"]);
+    let imu = &topics[2];
     assert_eq!((imu.message.as_str(), imu.encoding.as_str(), imu.count), ("sensor_msgs/msg/Imu", "cdr, ros2msg", 200));
     let read = tables(&bytes, &|topic| topic == "/imu").unwrap();
     assert_eq!(read.tables.keys().collect::<Vec<_>>(), ["/imu"]);

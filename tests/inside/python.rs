@@ -5,6 +5,7 @@
 
 use crate::support::python;
 use racer::flight::mcap::tables;
+use racer::flight::motors::row;
 use racer::flight::{Log, Readable, VehicleRecord, write};
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -16,7 +17,11 @@ const NEEDED: &str = "mcap_ros2";
 fn log() -> Log {
     let mut log = Log {
         start_ns: 1_700_000_000_123_456_789,
-        vehicle: VehicleRecord { mass_kg: Some(0.75), max_rate_rad_s: Some([11.5, 11.5, 7.0]) },
+        vehicle: VehicleRecord {
+            mass_kg: Some(0.75),
+            max_rate_rad_s: Some([11.5, 11.5, 7.0]),
+            ..VehicleRecord::default()
+        },
         ..Log::default()
     };
     for i in 0..200 {
@@ -25,7 +30,9 @@ fn log() -> Log {
         log.imu.push(time_s, [0.1 * i, 0.2, 0.3, -0.1, i, 9.8]);
         log.odometry.push(time_s, [i, 2.0, 3.0, 0.5, 0.5, -0.5, 0.5, 7.0, 8.0, 9.0]);
         log.battery.push(time_s, [16.5, f64::NAN]);
-        log.rotors.push(time_s, [1000.0, 1001.0, 1002.0, i]);
+        log.rotors.push(time_s, row(&[1000.0, 1001.0, 1002.0, i]));
+        log.motors.push(time_s, row(&[0.25, 0.5, 0.75, 0.005 * i]));
+        log.states.push(time_s, [1.0, 0.0]);
     }
     log
 }
@@ -44,7 +51,7 @@ fn python_reads_what_racer_wrote() {
     assert_eq!(vehicle["thrust_map"], "0..1 -> -1..1");
 
     let messages = read["messages"].as_array().unwrap();
-    assert_eq!(messages.len(), 1000);
+    assert_eq!(messages.len(), 1600);
     let last = |topic: &str| messages.iter().rfind(|message| message["topic"] == topic).unwrap();
     let expected = [
         ("/setpoint", "mavros_msgs/msg/AttitudeTarget", "/body_rate", json!({"x": 199.0, "y": -99.5, "z": 0.125})),
@@ -64,6 +71,9 @@ fn python_reads_what_racer_wrote() {
         ("/battery", "sensor_msgs/msg/BatteryState", "/present", json!(true)),
         ("/rotors", "sensor_msgs/msg/JointState", "/velocity", json!([1000.0, 1001.0, 1002.0, 199.0])),
         ("/rotors", "sensor_msgs/msg/JointState", "/name/3", json!("rotor_3")),
+        ("/motors", "actuator_msgs/msg/Actuators", "/normalized", json!([0.25, 0.5, 0.75, 0.005 * 199.0])),
+        ("/state", "mavros_msgs/msg/State", "/armed", json!(true)),
+        ("/extended_state", "mavros_msgs/msg/ExtendedState", "/landed_state", json!(1)),
     ];
     for (topic, name, pointer, value) in expected {
         let message = last(topic);
@@ -110,6 +120,9 @@ fn racer_reads_what_python_wrote() {
         ("/battery", "voltage", 16.5),
         ("/battery", "power_supply_technology", 3.0),
         ("/rotors", "velocity[3]", 409.0),
+        ("/motors", "normalized[1]", 0.9),
+        ("/state", "armed", 1.0),
+        ("/extended_state", "landed_state", 2.0),
     ];
     for (topic, path, value) in expected {
         let table = &read.tables[topic];

@@ -63,6 +63,16 @@ def message(topic, i):
             "velocity": [100.0, 200.0, 300.0, 400.0 + i],
             "effort": [],
         },
+        "/motors": lambda: {"position": [], "velocity": [], "normalized": [0.1 * i, 0.1 * i]},
+        "/state": lambda: {
+            "connected": True,
+            "armed": True,
+            "guided": False,
+            "manual_input": False,
+            "mode": "OFFBOARD",
+            "system_status": 4,
+        },
+        "/extended_state": lambda: {"vtol_state": 0, "landed_state": 2},
     }[topic]()
     return ns, {"header": header(ns), **body}
 

@@ -107,7 +107,11 @@ fn seen(craft: &Craft, world: &World, time_s: f64) -> Seen {
 pub fn record(world: &World, setting: &Setting, human: &mut dyn FnMut(&Craft) -> [f64; 4]) -> Log {
     let vehicle = &world.vehicle;
     let mut log = Log { name: "flight".into(), start_ns: 1_700_000_000_000_000_000, ..Log::default() };
-    log.vehicle = VehicleRecord { mass_kg: Some(vehicle.mass), max_rate_rad_s: Some(vehicle.configured_rate) };
+    log.vehicle = VehicleRecord {
+        mass_kg: Some(vehicle.mass),
+        max_rate_rad_s: Some(vehicle.configured_rate),
+        ..VehicleRecord::default()
+    };
     let mut sensors = Sensors::new(setting, world);
     let mut link = Link::new(&world.terms, setting.seed);
     let mut weather = Weather::new(&world.terms, setting.seed);

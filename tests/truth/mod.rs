@@ -74,7 +74,11 @@ pub fn record(
     human: &mut dyn FnMut(&State) -> [f64; 4],
 ) -> Log {
     let mut log = Log { name: format!("truth {seed}"), start_ns: 1_700_000_000_000_000_000, ..Log::default() };
-    log.vehicle = VehicleRecord { mass_kg: Some(vehicle.mass), max_rate_rad_s: Some(vehicle.configured_rate) };
+    log.vehicle = VehicleRecord {
+        mass_kg: Some(vehicle.mass),
+        max_rate_rad_s: Some(vehicle.configured_rate),
+        ..VehicleRecord::default()
+    };
     let mut sensors = Sensors::new(seed, noise);
     let mut state = State::on_ground(vehicle);
     let dt = CONTROL_S / STEPS as f64;

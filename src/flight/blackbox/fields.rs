@@ -7,7 +7,7 @@ use crate::flight::table::{LOG_TIME, Table};
 use std::collections::BTreeMap;
 
 /// Fields that a flight may have been recorded without, and how many of each.
-const STANDARD: [(&str, usize); 5] = [("setpoint", 4), ("gyroADC", 3), ("accSmooth", 3), ("motor", 4), ("eRPM", 4)];
+const STANDARD: [(&str, usize); 5] = [("setpoint", 4), ("gyroADC", 3), ("accSmooth", 3), ("motor", 8), ("eRPM", 8)];
 const STANDARD_SINGLE: [&str; 2] = ["vbatLatest", "amperageLatest"];
 
 /// Columns of the table "gps" beside its fields: metres from the first fix.

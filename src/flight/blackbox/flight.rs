@@ -60,7 +60,7 @@ pub fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Resul
             tables.insert(name.into(), table);
         }
     }
-    let vehicle = VehicleRecord { mass_kg: None, max_rate_rad_s: header.max_rates_rad_s() };
+    let vehicle = VehicleRecord { max_rate_rad_s: header.max_rates_rad_s(), ..VehicleRecord::default() };
     let remarks = remarks(&header, &tally);
     Ok(Flight { tables: Tables { tables, vehicle, readable: readable(&tally) }, span_s, remarks })
 }

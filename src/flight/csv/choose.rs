@@ -8,7 +8,7 @@ pub fn for_columns(header: &[String], name: &str) -> Result<&'static str, BadInp
     let mut fits = Vec::new();
     for (called, _) in LIBRARY.builtin {
         let mapping = Mapping::built_in(called)?;
-        let columns = mapping.columns();
+        let columns = mapping.required();
         let wanted: Vec<_> = columns.iter().filter(|(source, _)| source.is_empty()).collect();
         let found = wanted.iter().filter(|(_, column)| header.iter().any(|name| name == column)).count();
         if !wanted.is_empty() {

@@ -3,7 +3,7 @@
 use super::Flown;
 use crate::base::rng::{self, Philox, Sequence};
 use crate::flight::sensors::SensorConfig;
-use crate::flight::{Log, Stream, VehicleRecord};
+use crate::flight::{Log, Stream, VehicleKind, VehicleRecord};
 use crate::model::attitude::{body_axes, compose, dot, normalized, small_rotation};
 use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::{Craft, Factors, State};
@@ -51,7 +51,12 @@ impl<'a> Recorder<'a> {
             voltage: sensors.battery.voltage.draw_bias(&mut sequences[2]),
         };
         let [imu, odometry, battery] = sequences;
-        let record = VehicleRecord { mass_kg: Some(vehicle.mass_kg), max_rate_rad_s: Some(vehicle.max_rates_rad_s()) };
+        let record = VehicleRecord {
+            mass_kg: Some(vehicle.mass_kg),
+            max_rate_rad_s: Some(vehicle.max_rates_rad_s()),
+            kind: Some(VehicleKind::Multirotor),
+            rotors: None,
+        };
         let voltage = vehicle.battery.full_v;
         let state = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], voltage);
         Recorder {

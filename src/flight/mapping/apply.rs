@@ -18,6 +18,8 @@ impl Mapping {
             odometry: sources.stream("odometry", &self.odometry, streams::odometry)?,
             battery: sources.stream("battery", &self.battery, streams::battery)?,
             rotors: sources.stream("rotors", &self.rotors, streams::rotors)?,
+            motors: sources.stream("motors", &self.motors, streams::motors)?,
+            states: sources.states()?,
             vehicle: self.record(&tables.vehicle),
             readable: tables.readable.clone(),
             ..Log::default()
@@ -35,16 +37,26 @@ impl Mapping {
         VehicleRecord {
             mass_kg: file.mass_kg.or(self.vehicle.mass_kg),
             max_rate_rad_s: file.max_rate_rad_s.or(max_rate),
+            kind: file.kind.or(self.vehicle.kind),
+            rotors: file.rotors.or(self.vehicle.rotors),
         }
     }
 }
 
 impl Log {
     fn earliest(&self) -> f64 {
-        [&self.setpoint.time_s, &self.imu.time_s, &self.odometry.time_s, &self.battery.time_s, &self.rotors.time_s]
-            .into_iter()
-            .flatten()
-            .fold(f64::INFINITY, |earliest, &time| earliest.min(time))
+        [
+            &self.setpoint.time_s,
+            &self.imu.time_s,
+            &self.odometry.time_s,
+            &self.battery.time_s,
+            &self.rotors.time_s,
+            &self.motors.time_s,
+            &self.states.time_s,
+        ]
+        .into_iter()
+        .flatten()
+        .fold(f64::INFINITY, |earliest, &time| earliest.min(time))
     }
 
     /// Makes times relative to the earliest.
@@ -57,6 +69,8 @@ impl Log {
             &mut self.odometry.time_s,
             &mut self.battery.time_s,
             &mut self.rotors.time_s,
+            &mut self.motors.time_s,
+            &mut self.states.time_s,
         ];
         for time in streams.into_iter().flatten() {
             *time -= start;

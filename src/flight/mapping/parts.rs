@@ -1,9 +1,10 @@
 //! The streams of a mapping.
 
 use super::frames::{Body, VelocityFrame, World};
-use super::quantity::{Scalar, Time, Vector};
+use super::quantity::{Flag, Scalar, Time, Vector};
 use super::units::{Acceleration, AngularRate, Current, Length, One, Speed, Voltage};
 use crate::base::check::Invalid;
+use crate::flight::MOTORS;
 use serde::Deserialize;
 
 /// Commands to the rate controller.
@@ -82,8 +83,37 @@ pub struct Rotors {
     pub time: Option<Time>,
     #[serde(default)]
     pub optional: bool,
+    /// One column a rotor, up to 8.
     pub speed: Option<Vector<AngularRate>>,
     pub otherwise: Option<Box<Rotors>>,
+}
+
+/// What the motors were sent.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Motors {
+    #[serde(default)]
+    pub source: String,
+    pub time: Option<Time>,
+    #[serde(default)]
+    pub optional: bool,
+    /// One column a motor, up to 8; 0..1.
+    pub command: Option<Vector<One>>,
+    pub otherwise: Option<Box<Motors>>,
+}
+
+/// What the flight controller says of the flight. Each flag is read from the first alternative that a file has.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct States {
+    #[serde(default)]
+    pub source: String,
+    pub time: Option<Time>,
+    #[serde(default)]
+    pub optional: bool,
+    pub armed: Option<Flag>,
+    pub in_air: Option<Flag>,
+    pub otherwise: Option<Box<States>>,
 }
 
 /// Where the rows of a stream come from.
@@ -100,14 +130,14 @@ pub struct Origin<'a> {
 pub trait Part {
     fn origin(&self) -> Origin<'_>;
     fn otherwise(&self) -> Option<&Self>;
-    /// (Source if it is another than the stream's, column) of all quantities.
+    /// (Source, field) of all quantities.
     fn columns(&self) -> Vec<(&str, &str)>;
     /// The quantities alone.
     fn check(&self) -> Result<(), Invalid>;
 }
 
 macro_rules! part {
-    ($part:ty: $($quantity:ident[$count:literal]),+ $(; $check:expr)?) => {
+    ($part:ty: $($quantity:ident[$count:expr]),+ $(; $check:expr)?) => {
         impl Part for $part {
             fn origin(&self) -> Origin<'_> {
                 Origin { source: &self.source, time: self.time.as_ref(), optional: self.optional }
@@ -143,11 +173,13 @@ macro_rules! part {
     };
 }
 
-part!(Setpoint: rate[3], thrust[1]);
-part!(Imu: gyro[3], specific_force[3]; |imu| {
+part!(Setpoint: rate[3..=3], thrust[1..=1]);
+part!(Imu: gyro[3..=3], specific_force[3..=3]; |imu| {
     let ok = imu.rotation_deg.iter().all(|angle| angle.is_finite());
     Invalid::unless(ok, "rotation_deg", format!("{:?}", imu.rotation_deg), "three finite angles", "")
 });
-part!(Odometry: position[3], attitude[4], velocity[3]);
-part!(Battery: voltage[1], current[1]);
-part!(Rotors: speed[4]);
+part!(Odometry: position[3..=3], attitude[4..=4], velocity[3..=3]);
+part!(Battery: voltage[1..=1], current[1..=1]);
+part!(Rotors: speed[1..=MOTORS]);
+part!(Motors: command[1..=MOTORS]);
+part!(States: armed[1..=1], in_air[1..=1]);

@@ -3,6 +3,7 @@
 use super::units::{Duration, Unit};
 use crate::base::check::Invalid;
 use serde::Deserialize;
+use std::ops::RangeInclusive;
 
 /// When the rows of a table were measured.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -17,7 +18,8 @@ pub struct Time {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, bound = "U: serde::de::DeserializeOwned + Default")]
 pub struct Vector<U> {
-    /// Column of each component; with a minus before its name, x is the column's negative.
+    /// Column of each component; with a minus before its name, x is the column's negative; with a question mark behind
+    /// it a file may lack the column.
     pub fields: Vec<String>,
     #[serde(default)]
     pub unit: U,
@@ -51,21 +53,48 @@ fn one() -> f64 {
     1.0
 }
 
-/// A field's column and sign.
-pub(super) fn signed(field: &str) -> (f64, &str) {
-    field.strip_prefix('-').map_or((1.0, field), |column| (-1.0, column))
+/// A condition, by the number in a column.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Flag {
+    pub field: String,
+    /// It holds where the column has one of these numbers; any but 0 by default.
+    pub equals: Option<Vec<f64>>,
+    /// Numbers that say nothing.
+    #[serde(default)]
+    pub unknown: Vec<f64>,
+    /// A topic or table other than the stream's.
+    pub source: Option<String>,
+}
+
+/// A field's column.
+pub(super) fn column(field: &str) -> &str {
+    let field = field.strip_prefix('-').unwrap_or(field);
+    field.strip_suffix('?').unwrap_or(field)
+}
+
+/// The sign before a field.
+fn sign(field: &str) -> f64 {
+    if field.starts_with('-') { -1.0 } else { 1.0 }
+}
+
+/// Whether a file may lack a field.
+pub(super) fn optional(field: &str) -> bool {
+    field.ends_with('?')
 }
 
 impl<U: Unit> Vector<U> {
-    /// (Source, column) of every field, where the stream reads `source`.
+    /// (Source, field) of every field, where the stream reads `source`.
     pub(super) fn columns<'a>(&'a self, source: &'a str) -> Vec<(&'a str, &'a str)> {
         let source = self.source.as_deref().unwrap_or(source);
-        self.fields.iter().map(|field| (source, signed(field).1)).collect()
+        self.fields.iter().map(|field| (source, &**field)).collect()
     }
 
-    pub(super) fn check(&self, count: usize) -> Result<(), Invalid> {
-        let (fields, offsets) = (self.fields.len(), self.offset.len());
-        Invalid::unless(fields == count, "fields", format!("{fields} of them"), &format!("{count} columns"), "")?;
+    pub(super) fn check(&self, counts: RangeInclusive<usize>) -> Result<(), Invalid> {
+        let (count, offsets) = (self.fields.len(), self.offset.len());
+        let (least, most) = (counts.start(), counts.end());
+        let expected = if least == most { format!("{most} columns") } else { format!("{least} to {most} columns") };
+        Invalid::unless(counts.contains(&count), "fields", format!("{count} of them"), &expected, "")?;
         check_fields("fields", &self.fields)?;
         let scales = self.scale.len();
         let expected = format!("[s] or {count} numbers");
@@ -77,7 +106,7 @@ impl<U: Unit> Vector<U> {
 
     /// Component k in SI where its column holds `x`.
     pub(super) fn value(&self, k: usize, x: f64) -> f64 {
-        let sign = signed(&self.fields[k]).0;
+        let sign = sign(&self.fields[k]);
         let scale = self.scale.get(k).or(self.scale.first()).unwrap_or(&1.0);
         (sign * scale * x + self.offset.get(k).unwrap_or(&0.0)) * self.unit.factor()
     }
@@ -89,10 +118,10 @@ impl<U: Unit> Scalar<U> {
     }
 
     pub(super) fn columns<'a>(&'a self, source: &'a str) -> Vec<(&'a str, &'a str)> {
-        self.fields().iter().map(|field| (source, signed(field).1)).collect()
+        self.fields().iter().map(|field| (source, &**field)).collect()
     }
 
-    pub(super) fn check(&self, _count: usize) -> Result<(), Invalid> {
+    pub(super) fn check(&self, _counts: RangeInclusive<usize>) -> Result<(), Invalid> {
         let found = if self.field.is_some() { "both" } else { "neither" };
         Invalid::unless(self.field.is_some() != self.mean.is_some(), "", found, "either `field` or `mean`", "")?;
         Invalid::unless(!self.fields().is_empty(), "mean", "no column", "one column or more", "")?;
@@ -104,13 +133,31 @@ impl<U: Unit> Scalar<U> {
     /// In SI, where the columns of the fields hold `x`.
     pub(super) fn value(&self, x: impl Iterator<Item = f64>) -> f64 {
         let fields = self.fields();
-        let sum: f64 = fields.iter().zip(x).map(|(field, x)| signed(field).0 * x).sum();
+        let sum: f64 = fields.iter().zip(x).map(|(field, x)| sign(field) * x).sum();
         (self.scale * sum / fields.len() as f64 + self.offset) * self.unit.factor()
     }
 }
 
+impl Flag {
+    pub(super) fn columns<'a>(&'a self, source: &'a str) -> Vec<(&'a str, &'a str)> {
+        vec![(self.source.as_deref().unwrap_or(source), &self.field)]
+    }
+
+    pub(super) fn check(&self, _counts: RangeInclusive<usize>) -> Result<(), Invalid> {
+        check_fields("field", std::slice::from_ref(&self.field))?;
+        let some = self.equals.as_ref().is_none_or(|equals| !equals.is_empty());
+        Invalid::unless(some, "equals", "no number", "one number or more", "leave it out for any but 0")
+    }
+
+    /// 1 where the condition holds for `x`, 0 where it does not, NaN where that is not known.
+    pub(super) fn value(&self, x: f64) -> f64 {
+        let holds = self.equals.as_ref().map_or(x != 0.0, |equals| equals.contains(&x));
+        if x.is_nan() || self.unknown.contains(&x) { f64::NAN } else { holds.into() }
+    }
+}
+
 fn check_fields(key: &str, fields: &[String]) -> Result<(), Invalid> {
-    let named = fields.iter().all(|field| !signed(field).1.is_empty());
+    let named = fields.iter().all(|field| !column(field).is_empty());
     Invalid::unless(named, key, "a column without a name", "names of columns", "")
 }
 

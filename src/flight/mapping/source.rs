@@ -1,8 +1,8 @@
 //! Tables and columns by name, and what to say where there are none.
 
-use super::quantity::{Scalar, Time, Vector, signed};
+use super::quantity::{Flag, Scalar, Time, Vector, column, optional};
 use super::units::Unit;
-use super::{Mapping, Part, join};
+use super::{Mapping, Part, States, join};
 use crate::base::check::BadInput;
 use crate::base::document::nearest;
 use crate::flight::table::{LOG_TIME, Table, Tables};
@@ -42,7 +42,19 @@ impl From<BadInput> for Missing {
     }
 }
 
+/// When a flag was said to be what.
+pub type Told = Vec<(f64, f64)>;
+
 impl<'a> Sources<'a> {
+    /// What a flag of the part `key` says, row by row, in the order of the file.
+    pub fn flag(&self, key: &str, part: &'a States, flag: &'a Flag) -> Result<Told, Missing> {
+        let source = flag.source.as_deref().unwrap_or(&part.source);
+        let table = self.table(key, source)?;
+        let values = self.column(key, source, table, column(&flag.field))?;
+        let stamps = self.stamps(key, source, table, part.time.as_ref())?;
+        Ok(stamps.into_iter().zip(values.iter().map(|&x| flag.value(x))).collect())
+    }
+
     pub fn open<'b, P: Part>(&'b self, key: &'b str, part: &'b P) -> Result<Open<'b>, Missing> {
         let origin = part.origin();
         let table = self.table(key, origin.source)?;
@@ -127,7 +139,10 @@ impl Open<'_> {
     fn own<U: Unit, const N: usize>(&self, key: &str, source: &str, table: &Table, quantity: &Vector<U>) -> Rows<N> {
         let mut rows = vec![[f64::NAN; N]; table.rows()];
         for (k, field) in quantity.fields.iter().enumerate().take(N) {
-            let column = self.sources.column(&format!("{key}.fields"), source, table, signed(field).1)?;
+            if optional(field) && !table.columns.contains_key(column(field)) {
+                continue;
+            }
+            let column = self.sources.column(&format!("{key}.fields"), source, table, column(field))?;
             for (row, &x) in rows.iter_mut().zip(column) {
                 row[k] = quantity.value(k, x);
             }
@@ -140,7 +155,7 @@ impl Open<'_> {
         let key = format!("{}.{name}", self.key);
         let mut columns = Vec::new();
         for field in quantity.fields() {
-            columns.push(self.sources.column(&key, self.source, self.table, signed(field).1)?);
+            columns.push(self.sources.column(&key, self.source, self.table, column(field))?);
         }
         Ok((0..self.table.rows()).map(|i| quantity.value(columns.iter().map(|column| column[i]))).collect())
     }

@@ -1,7 +1,8 @@
 //! The rows of each stream in SI, front-left-up and east-north-up.
 
 use super::source::{Open, Rows};
-use super::{Battery, Imu, Odometry, Rotors, Setpoint, VelocityFrame, frames};
+use super::{Battery, Imu, Motors, Odometry, Rotors, Setpoint, VelocityFrame, frames};
+use crate::flight::MOTORS;
 
 pub fn setpoint(part: &Setpoint, open: &Open) -> Rows<4> {
     let body = part.body.unwrap_or(open.sources.mapping.body);
@@ -55,6 +56,10 @@ fn measured(values: Vec<f64>) -> Vec<f64> {
     if values.iter().all(|&value| value == 0.0) { vec![f64::NAN; values.len()] } else { values }
 }
 
-pub fn rotors(part: &Rotors, open: &Open) -> Rows<4> {
+pub fn rotors(part: &Rotors, open: &Open) -> Rows<MOTORS> {
     open.vector("speed", &part.speed, false)
+}
+
+pub fn motors(part: &Motors, open: &Open) -> Rows<MOTORS> {
+    open.vector("command", &part.command, false)
 }

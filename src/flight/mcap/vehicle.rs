@@ -2,7 +2,7 @@
 
 use super::bytes::Bytes;
 use crate::base::check::BadInput;
-use crate::flight::VehicleRecord;
+use crate::flight::{MOTORS, VehicleKind, VehicleRecord};
 use std::collections::BTreeMap;
 
 /// Name of the record.
@@ -10,6 +10,8 @@ pub const NAME: &str = "racer.vehicle";
 /// Its keys.
 pub const MASS: &str = "mass_kg";
 pub const MAX_RATE: &str = "max_rate_rad_s";
+pub const KIND: &str = "kind";
+pub const ROTORS: &str = "rotors";
 pub const THRUST_MAP: &str = "thrust_map";
 /// The only thrust map there is: how the setpoint's thrust becomes a policy's command.
 pub const THRUST: &str = "0..1 -> -1..1";
@@ -38,9 +40,19 @@ pub fn read(values: &[u8]) -> Result<VehicleRecord, BadInput> {
     {
         return Err(wrong(THRUST_MAP, found, THRUST));
     }
+    let kind = values.get(KIND).map(|name| {
+        VehicleKind::of(name)
+            .ok_or_else(|| wrong(KIND, name, "multirotor, fixed_wing, vtol, helicopter, rover or other"))
+    });
+    let rotors = values.get(ROTORS).map(|text| {
+        let rotors = text.parse().ok().filter(|rotors: &u8| (1..=MOTORS).contains(&usize::from(*rotors)));
+        rotors.ok_or_else(|| wrong(ROTORS, text, &format!("1 to {MOTORS}")))
+    });
     Ok(VehicleRecord {
         mass_kg: numbers(MASS, 1, "a number above 0")?.map(|mass| mass[0]),
         max_rate_rad_s: numbers(MAX_RATE, 3, "three numbers above 0")?.map(|rate| [rate[0], rate[1], rate[2]]),
+        kind: kind.transpose()?,
+        rotors: rotors.transpose()?,
     })
 }
 

@@ -1,6 +1,7 @@
 //! The canonical messages, field by field. Numbers that racer has not are written as each message defines it.
 
 use super::cdr::Cdr;
+use crate::flight::MOTORS;
 
 /// Reference frames in headers.
 pub const WORLD: &str = "world";
@@ -58,18 +59,54 @@ pub fn battery_state(cdr: &mut Cdr, [voltage, current]: [f64; 2]) {
     cdr.text("");
 }
 
-/// `sensor_msgs/msg/JointState`: rotor speeds (rad/s).
-pub fn joint_state(cdr: &mut Cdr, speeds: [f64; 4]) {
-    cdr.length(speeds.len());
-    for rotor in 0..speeds.len() {
-        cdr.text(&format!("rotor_{rotor}"));
+/// `sensor_msgs/msg/JointState`: speeds of so many rotors (rad/s).
+pub fn joint_state(rotors: usize) -> impl Fn(&mut Cdr, [f64; MOTORS]) {
+    move |cdr, speeds| {
+        cdr.length(rotors);
+        for rotor in 0..rotors {
+            cdr.text(&format!("rotor_{rotor}"));
+        }
+        // Angles.
+        cdr.length(0);
+        cdr.length(rotors);
+        cdr.f64s(&speeds[..rotors]);
+        // Torques.
+        cdr.length(0);
     }
-    // Angles.
-    cdr.length(0);
-    cdr.length(speeds.len());
-    cdr.f64s(&speeds);
-    // Torques.
-    cdr.length(0);
+}
+
+/// `actuator_msgs/msg/Actuators`: what so many motors were sent, of the full command (0..1).
+pub fn actuators(motors: usize) -> impl Fn(&mut Cdr, [f64; MOTORS]) {
+    move |cdr, commands| {
+        // Positions and speeds.
+        cdr.length(0);
+        cdr.length(0);
+        cdr.length(motors);
+        cdr.f64s(&commands[..motors]);
+    }
+}
+
+/// `mavros_msgs/msg/State`: whether it is armed.
+pub fn state(cdr: &mut Cdr, [armed]: [f64; 1]) {
+    const STANDBY: u8 = 3;
+    const ACTIVE: u8 = 4;
+    let armed = armed != 0.0;
+    // Connected, armed, guided, manual input.
+    for flag in [true, armed, false, false] {
+        cdr.u8(flag.into());
+    }
+    // Mode.
+    cdr.text("");
+    cdr.u8(if armed { ACTIVE } else { STANDBY });
+}
+
+/// `mavros_msgs/msg/ExtendedState`: whether it is in the air.
+pub fn extended_state(cdr: &mut Cdr, [in_air]: [f64; 1]) {
+    const VTOL_UNDEFINED: u8 = 0;
+    const ON_GROUND: u8 = 1;
+    const IN_AIR: u8 = 2;
+    cdr.u8(VTOL_UNDEFINED);
+    cdr.u8(if in_air != 0.0 { IN_AIR } else { ON_GROUND });
 }
 
 /// No rotation.

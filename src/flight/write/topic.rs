@@ -64,6 +64,27 @@ pub const ROTORS: Topic = Topic {
     uses: &[HEADER, TIME],
 };
 
+pub const MOTORS: Topic = Topic {
+    name: "/motors",
+    message: "actuator_msgs/msg/Actuators",
+    definition: include_str!("../ros/Actuators.msg"),
+    uses: &[HEADER, TIME],
+};
+
+pub const STATE: Topic = Topic {
+    name: "/state",
+    message: "mavros_msgs/msg/State",
+    definition: include_str!("../ros/State.msg"),
+    uses: &[HEADER, TIME],
+};
+
+pub const EXTENDED_STATE: Topic = Topic {
+    name: "/extended_state",
+    message: "mavros_msgs/msg/ExtendedState",
+    definition: include_str!("../ros/ExtendedState.msg"),
+    uses: &[HEADER, TIME],
+};
+
 impl Topic {
     /// The `ros2msg` schema.
     pub fn schema(&self) -> String {

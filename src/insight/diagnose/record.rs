@@ -163,7 +163,7 @@ fn one_clock(log: &Log) -> bool {
 
 /// Whether the thrust command is the mean rotor speed in another unit.
 fn from_rotors(log: &Log) -> bool {
-    let speeds = log.rotors.rows.iter().map(|row| row.iter().sum::<f64>());
+    let speeds = log.rotors.means().into_iter();
     let ratios: Vec<f64> = log.setpoint.rows.iter().zip(speeds).map(|(row, speed)| row[3] / speed).collect();
     let finite: Vec<f64> = ratios.into_iter().filter(|r| r.is_finite()).collect();
     let middle = crate::base::stats::median(&finite);

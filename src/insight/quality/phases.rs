@@ -41,11 +41,8 @@ pub fn impacts(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
 /// How hard the rotors work, any unit: their speed where it was measured, else the thrust command.
 fn effort(log: &Log) -> Option<Vec<f64>> {
     let turning = log.rotors.rows.iter().any(|row| row.iter().any(|w| *w > 0.0));
-    let (times, values) = if turning {
-        (&log.rotors.time_s, log.rotors.rows.iter().map(|row| mean(row)).collect())
-    } else {
-        (&log.setpoint.time_s, log.setpoint.column(3))
-    };
+    let (times, values) =
+        if turning { (&log.rotors.time_s, log.rotors.means()) } else { (&log.setpoint.time_s, log.setpoint.column(3)) };
     let known = values.iter().any(|x: &f64| x.is_finite());
     known.then(|| held(times, &values, &log.imu.time_s))
 }

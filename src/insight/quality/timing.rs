@@ -19,6 +19,8 @@ pub fn repair(log: &Log, findings: &mut Vec<LogFinding>) -> (Log, Vec<StreamSumm
     each(mend("odometry", &mut out.odometry, true, findings));
     each(mend("battery", &mut out.battery, false, findings));
     each(mend("rotors", &mut out.rotors, false, findings));
+    each(mend("motors", &mut out.motors, false, findings));
+    each(mend("states", &mut out.states, false, findings));
     (out, summaries)
 }
 
