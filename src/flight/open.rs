@@ -40,8 +40,13 @@ pub fn open(path: &Path, mapping: Option<&str>) -> Result<Log, BadInput> {
 
 /// Reads a log, and says how.
 pub fn open_with(path: &Path, options: Options) -> Result<Opened, BadInput> {
+    open_bytes(path, &read(path)?, options)
+}
+
+/// Reads a log that the file `path` holds as `bytes`.
+pub fn open_bytes(path: &Path, bytes: &[u8], options: Options) -> Result<Opened, BadInput> {
     let name = &path.display().to_string();
-    let file = File { path, name, bytes: &read(path)?, flight: options.flight };
+    let file = File { path, name, bytes, flight: options.flight };
     let format = recognise(&file)?;
     if options.flight.is_some() && !format.has_flights() {
         let found = format!("a file of another kind, {name}");

@@ -91,7 +91,8 @@ impl Snapshot {
             .map_err(|Invalid { key, found, advice, .. }| refuse(format!("{key}: {found}"), &advice))
     }
 
-    fn from_bytes(bytes: &[u8]) -> Result<Self, Invalid> {
+    /// Reads the content of a file.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Invalid> {
         let about = read_about(bytes)?;
         let file = SafeTensors::deserialize(bytes).map_err(|error| Invalid::new("file", error, "", ""))?;
         let network = tensors::read_network(&file)?;

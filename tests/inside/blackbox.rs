@@ -117,6 +117,19 @@ fn log(steps: &[Step], start_us: i64) -> (Vec<u8>, Rows, Vec<usize>) {
     (logger.bytes, rows, ends)
 }
 
+/// A flight of every kind of frame.
+pub fn flight() -> Vec<u8> {
+    let frame = |i: i32| Step::Main(i % 16 == 0, (0..MAIN.len() as i32).map(|k| (i * 37 + k * 11) % 300).collect());
+    let others = [
+        Step::Home(vec![480_000_000, 90_000_000]),
+        Step::Gps(vec![0, 9, 480_000_500, 90_000_100]),
+        Step::Slow(vec![1, 0, 1, 1]),
+        Step::Event(13, vec![3, -7]),
+        Step::Event(30, vec![1, 2]),
+    ];
+    log(&[(1..40).map(frame).collect(), others.to_vec(), (41..90).map(frame).collect()].concat(), 1_000_000).0
+}
+
 fn event(logger: &mut Logger, kind: u8, numbers: &[i32], time: i64) -> (char, i64, Vec<i64>) {
     let [first, second] = [numbers[0].unsigned_abs(), numbers[1].unsigned_abs()];
     let mut payload = Vec::new();

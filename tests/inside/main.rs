@@ -3,6 +3,7 @@
 mod blackbox;
 mod cards;
 mod config;
+mod corpus;
 mod dependence;
 mod dynamics;
 mod effects;

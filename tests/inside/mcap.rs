@@ -1,6 +1,6 @@
 //! MCAP files: what racer writes, what others write, and what nobody should.
 
-mod foreign;
+pub mod foreign;
 mod hostile;
 
 use racer::flight::mapping::Mapping;
@@ -11,7 +11,7 @@ use racer::flight::{Log, MOTORS, Readable, Stream, VehicleKind, VehicleRecord, w
 use std::time::Instant;
 
 /// A log with `n` IMU samples, and fewer of the others.
-fn log(n: usize) -> Log {
+pub fn log(n: usize) -> Log {
     fn stream<const N: usize>(n: usize, period_s: f64) -> Stream<N> {
         let mut stream = Stream::default();
         for i in 0..n {

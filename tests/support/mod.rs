@@ -3,6 +3,9 @@
 // Either test program uses its own part.
 #![allow(dead_code)]
 
+pub mod feed;
+pub mod ulog;
+
 use assert_cmd::Command;
 use std::io::Write;
 use std::path::{Path, PathBuf};
