@@ -18,7 +18,6 @@ pub mod series;
 pub mod spans;
 pub mod table;
 mod ulog;
-mod ulog_format;
 pub mod vehicle;
 pub mod write;
 

@@ -112,10 +112,11 @@ fn row<const N: usize>(name: &str, stream: &Stream<N>, parts: &[(&str, std::ops:
         return [name, "none", "", "", "", ""].map(String::from).into();
     }
     let rate = (stream.len() - 1) as f64 / (to - from);
+    let rate = if rate.is_finite() { format!("{rate:.1}") } else { "-".into() };
     let lacks = |columns: &std::ops::Range<usize>| {
         stream.rows.iter().all(|row| row[columns.clone()].iter().all(|x| x.is_nan()))
     };
     let lacking: Vec<&str> = parts.iter().filter(|(_, columns)| lacks(columns)).map(|(part, _)| *part).collect();
-    let numbers = [format!("{rate:.1}"), format!("{from:.2}"), format!("{to:.2}"), lacking.join(", ")];
+    let numbers = [rate, format!("{from:.2}"), format!("{to:.2}"), lacking.join(", ")];
     [name.to_string(), stream.len().to_string()].into_iter().chain(numbers).collect()
 }

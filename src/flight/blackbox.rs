@@ -2,9 +2,13 @@
 //! each other. Everything is read by what the header declares, whatever firmware it names.
 //!
 //! The table "main" has the fields of main frames under their own names, in rad/s, m/s2, V, A and, for throttle and
-//! motors, 0..1; other fields as they are. "gps" has those of GPS frames, and `east` and `north` of the first of them,
-//! in m. "slow" has flight modes and the like, "events" the number of each [`event::Event`] and what it says.
+//! motors, 0..1 from stop to full, eRPM of the rotor in rad/s; other fields as they are. "gps" has those of GPS frames,
+//! `east` and `north` of the first of them in m, and `velocity_east`, `velocity_north` and `velocity_up` in m/s.
+//! "attitude" has `qw` to `qz`, front-left-up to east-north-up, where it was logged. "states" has `armed`, "slow" flight
+//! modes and the like, "events" the number of each [`event::Event`] and what it says.
 
+mod armed;
+mod attitude;
 mod bytes;
 pub mod decoded;
 pub mod decoder;
@@ -12,9 +16,9 @@ pub mod definition;
 mod encoding;
 pub mod event;
 mod fields;
+mod fixes;
 mod flight;
 pub mod header;
-mod plane;
 mod predictor;
 mod scales;
 mod sequence;

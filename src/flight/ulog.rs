@@ -1,12 +1,15 @@
 //! PX4 ULog files: one table a topic, `topic#1` for its second instance. Read by ourselves: the library for it panics
 //! on damaged files, and unfolds a small hostile one into gigabytes.
 
+mod format;
+mod vehicle;
+
 use super::Readable;
 use super::format::{Content, File, Format};
 use super::mapping::Mapping;
 use super::table::{LOG_TIME, Table, Tables};
-use super::ulog_format::{Formats, Leaf};
 use crate::base::check::BadInput;
+use format::{Formats, Leaf};
 use std::collections::{BTreeMap, HashMap};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
@@ -24,6 +27,7 @@ struct LogReader<'a> {
     /// Topics by the number under which records name them.
     ids: HashMap<u16, String>,
     topics: HashMap<String, TopicColumns>,
+    parameters: vehicle::Parameters,
 }
 
 /// Logs of PX4.
@@ -43,7 +47,11 @@ impl Format for ULog {
     }
 
     fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
-        Ok(tables(file.bytes, file.name, &|topic| mapping.wanted(topic))?.into())
+        let made = mapping.wanted("motors") || mapping.wanted("rotors") || mapping.wanted("vehicle_status");
+        let wanted = |topic: &str| mapping.wanted(topic) || made && vehicle::SOURCES.contains(&topic);
+        let (mut tables, parameters) = read(file.bytes, file.name, &wanted)?;
+        let remark = vehicle::complete(&mut tables, &parameters);
+        Ok(Content { tables, remarks: remark.into_iter().collect() })
     }
 }
 
@@ -55,7 +63,7 @@ enum EarlyEnd {
 
 /// Reads the topics that are `wanted`; of others the name alone, as an empty table. Times are in s since the vehicle's
 /// start. A file that breaks off, or turns bad, gives what came before.
-pub fn tables(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result<Tables, BadInput> {
+fn read(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result<(Tables, vehicle::Parameters), BadInput> {
     if bytes.len() < HEADER_BYTES || !bytes.starts_with(MAGIC) {
         return Err(BadInput::new(name, "no ULog header", "a PX4 ULog file", ""));
     }
@@ -83,7 +91,10 @@ pub fn tables(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result
             let found = format!("no topic before byte {position}: {why}");
             Err(BadInput::new(name, found, "a PX4 ULog file with data", ""))
         }
-        readable => Ok(Tables { tables: reader.tables(), readable, ..Tables::default() }),
+        readable => {
+            let parameters = std::mem::take(&mut reader.parameters);
+            Ok((Tables { tables: reader.tables(), readable, ..Tables::default() }, parameters))
+        }
     }
 }
 
@@ -125,7 +136,11 @@ impl<'a> LogReader<'a> {
             b'F' => self.formats.add(payload),
             b'A' => self.subscribe(payload, wanted),
             b'D' => self.record(payload),
-            // Parameters, text, marks; and what later versions add.
+            b'P' => {
+                vehicle::parameter(&mut self.parameters, payload);
+                Ok(())
+            }
+            // Text, marks; and what later versions add.
             other if other.is_ascii_uppercase() => Ok(()),
             other => Err(format!("a message of the unknown kind {other}")),
         }
@@ -177,6 +192,10 @@ impl<'a> LogReader<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn tables(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result<Tables, BadInput> {
+        Ok(read(bytes, name, wanted)?.0)
+    }
 
     fn message(kind: u8, payload: &[u8]) -> Vec<u8> {
         [&(payload.len() as u16).to_le_bytes()[..], &[kind], payload].concat()

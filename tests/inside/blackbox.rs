@@ -1,5 +1,6 @@
 //! The blackbox reader against an encoder that packs as the firmware does, against damage, and on real flights.
 
+mod channels;
 mod encoder;
 mod pack;
 

@@ -11,6 +11,7 @@ pub struct Event {
 }
 
 pub const LOGGING_RESUME: u8 = 14;
+pub const DISARM: u8 = 15;
 pub const LOG_END: u8 = 255;
 const LAST_WORDS: &[u8; 11] = b"End of log\0";
 
@@ -21,7 +22,7 @@ impl Event {
         let (mut first, mut second, mut known) = (f64::NAN, f64::NAN, true);
         match kind {
             // The moment of a beep; of Rotorflight the states of governor, rescue and flight; why it was disarmed.
-            0 | 15 | 50..=52 => first = bytes.unsigned()?.into(),
+            0 | DISARM | 50..=52 => first = bytes.unsigned()?.into(),
             // An error of INAV's attitude; others try motors with it.
             40 if inav => first = bytes.unsigned()?.into(),
             40 => bytes.skip(5)?,

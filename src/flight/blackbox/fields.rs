@@ -7,16 +7,18 @@ use crate::flight::table::{LOG_TIME, Table};
 use std::collections::BTreeMap;
 
 /// Fields that a flight may have been recorded without, and how many of each.
-const STANDARD: [(&str, usize); 5] = [("setpoint", 4), ("gyroADC", 3), ("accSmooth", 3), ("motor", 8), ("eRPM", 8)];
+const STANDARD: [(&str, usize); 5] = [("setpoint", 4), ("gyroADC", 3), ("accSmooth", 3), ("motor", 1), ("eRPM", 1)];
 const STANDARD_SINGLE: [&str; 2] = ["vbatLatest", "amperageLatest"];
-
-/// Columns of the table "gps" beside its fields: metres from the first fix.
-pub const PLANE: [&str; 2] = ["east", "north"];
 
 /// Names of the fields that a flight may have been recorded without.
 pub fn standard() -> impl Iterator<Item = String> {
     let numbered = |(of, count): (&'static str, usize)| (0..count).map(move |i| format!("{of}[{i}]"));
     STANDARD_SINGLE.into_iter().map(String::from).chain(STANDARD.into_iter().flat_map(numbered))
+}
+
+/// Whether a field is of a motor beyond the first, of which a vehicle may have fewer.
+pub fn further_motor(name: &str) -> bool {
+    (name.starts_with("motor[") || name.starts_with("eRPM[")) && !name.ends_with("[0]")
 }
 
 /// What INAV calls a field of Betaflight's with the same meaning and unit.
@@ -38,14 +40,15 @@ pub struct Field {
     index: Option<usize>,
     zero: f64,
     scale: f64,
+    least: f64,
 }
 
 impl Field {
     pub fn absent(name: &str) -> Self {
-        Self { name: name.into(), index: None, zero: 0.0, scale: 1.0 }
+        Self { name: name.into(), index: None, zero: 0.0, scale: 1.0, least: f64::NEG_INFINITY }
     }
 
-    /// Fails where the header lacks the scale that the field needs.
+    /// Fails where the header lacks the scale that the field needs; motors without one are absent.
     pub fn new(name: &str, index: usize, header: &Header, place: &str) -> Result<Self, BadInput> {
         let (zero, scale) = match name.split('[').next().unwrap_or(name) {
             "setpoint" if name == "setpoint[3]" => (0.0, 1e-3),
@@ -54,20 +57,28 @@ impl Field {
             "accSmooth" => (0.0, header.acceleration_scale_m_s2(place)?),
             "vbatLatest" => (0.0, header.voltage_scale_v()),
             "amperageLatest" => (0.0, 1e-2),
-            "motor" => header.motor_range(place).map(|[low, high]| (low, 1.0 / (high - low)))?,
-            "eRPM" => (0.0, header.rotor_speed_scale_rad_s(place)?),
+            "motor" => match header.motor_range() {
+                Some([stop, full]) => (stop, 1.0 / (full - stop)),
+                None => return Ok(Self::absent(name)),
+            },
+            "eRPM" => match header.rotor_speed_scale_rad_s() {
+                Some(scale) => (0.0, scale),
+                None => return Ok(Self::absent(name)),
+            },
             "GPS_coord" => (0.0, 1e-7),
             "GPS_speed" => (0.0, 1e-2),
             "GPS_ground_course" => (0.0, 0.1),
             "GPS_altitude" => (0.0, header.altitude_scale_m()),
             _ => (0.0, 1.0),
         };
-        Ok(Self { name: name.into(), index: Some(index), zero, scale })
+        // A stopped motor is sent a number below the least command.
+        let least = if name.starts_with("motor") { 0.0 } else { f64::NEG_INFINITY };
+        Ok(Self { name: name.into(), index: Some(index), zero, scale, least })
     }
 
     fn value(&self, definition: &Definition, frame: &[i64]) -> f64 {
         let Some(index) = self.index else { return f64::NAN };
-        self.scale * (definition.number(index, frame[index]) as f64 - self.zero)
+        (self.scale * (definition.number(index, frame[index]) as f64 - self.zero)).max(self.least)
     }
 }
 

@@ -1,10 +1,12 @@
 //! One flight of a file: its header, and the wanted columns of its frames.
 
+use super::armed::Armed;
+use super::attitude::Attitude;
 use super::decoder::{Decoder, Frame};
 use super::definition::{Definition, Definitions};
-use super::fields::{Field, PLANE, Recorded, Rows, of_inav, standard};
+use super::fields::{Field, Recorded, Rows, further_motor, of_inav, standard};
+use super::fixes::{DERIVED, Fixes, Places};
 use super::header::Header;
-use super::plane::Plane;
 use super::tally::Tally;
 use crate::base::check::BadInput;
 use crate::base::document::nearest;
@@ -36,32 +38,45 @@ pub fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Resul
     let mut gps = Recorded::new(&definitions.gps, select("gps", &definitions.gps)?);
     let mut slow = Recorded::new(&definitions.slow, select("slow", &definitions.slow)?);
     let mut events = Rows::new(EVENT.len());
-    let mut plane = Plane::new(&definitions.gps);
+    let (places, mut fixes) = (Places::new(&definitions.gps, &header), Fixes::default());
+    let mut armed = Armed::new(&definitions.slow, &header);
+    let mut attitude = Attitude::new(&definitions.intra);
     let tally = decoder.run(header.end, |time_us, frame| match frame {
-        Frame::Main(frame) => main.push(time_us, frame),
+        Frame::Main(frame) => {
+            main.push(time_us, frame);
+            armed.begin(time_us);
+            if let Some(attitude) = &mut attitude {
+                attitude.push(time_us, &definitions.intra, frame);
+            }
+        }
         Frame::Gps(frame) => {
             gps.push(time_us, frame);
-            plane.push(&definitions.gps, frame);
+            fixes.push(time_us, &places, &definitions.gps, frame);
         }
-        Frame::Slow(frame) => slow.push(time_us, frame),
-        Frame::Event(event) => events.push(time_us, [event.kind.into(), event.first, event.second]),
+        Frame::Slow(frame) => {
+            slow.push(time_us, frame);
+            armed.slow(time_us, frame);
+        }
+        Frame::Event(event) => {
+            events.push(time_us, [event.kind.into(), event.first, event.second]);
+            armed.event(time_us, event);
+        }
     });
     let span_s = main.rows.span_s();
+    let mut remarks = remarks(&header, &tally);
+    remarks.extend(heading(&definitions));
     let mut tables: BTreeMap<String, Table> = BTreeMap::from([("main".into(), main.table())]);
     tables.insert("events".into(), events.table(EVENT.map(String::from)));
-    for (name, definition, mut table) in
-        [("gps", &definitions.gps, gps.table()), ("slow", &definitions.slow, slow.table())]
-    {
-        if name == "gps" {
-            let of_plane = [std::mem::take(&mut plane.east), std::mem::take(&mut plane.north)];
-            table.columns.extend(PLANE.map(String::from).into_iter().zip(of_plane));
-        }
+    tables.insert("states".into(), armed.table());
+    tables.extend(attitude.map(|attitude| ("attitude".to_string(), attitude.table())));
+    let mut gps = gps.table();
+    fixes.add_to(&mut gps);
+    for (name, definition, table) in [("gps", &definitions.gps, gps), ("slow", &definitions.slow, slow.table())] {
         if !definition.names.is_empty() {
             tables.insert(name.into(), table);
         }
     }
     let vehicle = VehicleRecord { max_rate_rad_s: header.max_rates_rad_s(), ..VehicleRecord::default() };
-    let remarks = remarks(&header, &tally);
     Ok(Flight { tables: Tables { tables, vehicle, readable: readable(&tally) }, span_s, remarks })
 }
 
@@ -77,12 +92,13 @@ fn select(
     let position = |name: &str| known().position(|known| known == name);
     let mut fields = Vec::new();
     for (_, column) in wanted.iter().filter(|(source, _)| *source == table && !definition.names.is_empty()) {
-        if *column == LOG_TIME || PLANE.contains(column) {
+        if *column == LOG_TIME || DERIVED.contains(column) {
             continue;
         }
         let alias = of_inav(column).filter(|_| header.inav());
         match position(column).or_else(|| position(alias?)) {
             Some(index) => fields.push(Field::new(column, index, header, place)?),
+            None if further_motor(column) => {}
             None if standard().any(|name| name == *column) => fields.push(Field::absent(column)),
             None => {
                 let advice = match nearest(column, known()) {
@@ -107,6 +123,23 @@ fn readable(tally: &Tally) -> Readable {
     }
 }
 
+/// What is uncertain about attitude and velocity.
+fn heading(definitions: &Definitions) -> Option<String> {
+    let [attitude, fixes] = [(&definitions.intra, "imuQuaternion[0]"), (&definitions.gps, "GPS_speed")]
+        .map(|(definition, field)| definition.names.iter().any(|name| name == field));
+    Some(
+        match (attitude, fixes) {
+            (true, true) => {
+                "the heading is the flight controller's own: where neither compass nor GPS set it, velocity along the \
+             body is wrong"
+            }
+            (false, true) => "it logs no attitude, so the GPS's velocity has no direction in the body and is left out",
+            _ => return None,
+        }
+        .into(),
+    )
+}
+
 fn remarks(header: &Header, tally: &Tally) -> Vec<String> {
     let mut remarks = Vec::new();
     if tally.lost_bytes > 0 {
@@ -118,6 +151,16 @@ fn remarks(header: &Header, tally: &Tally) -> Vec<String> {
     }
     if tally.homeless > 0 {
         remarks.push(format!("{} GPS frames before the first home position are left out", tally.homeless));
+    }
+    let missing = [
+        ("motor[0]", header.motor_range().is_none(), "motorOutput", "motor outputs"),
+        ("eRPM[0]", header.rotor_speed_scale_rad_s().is_none(), "motor_poles", "rotor speeds"),
+    ];
+    let recorded = header.list("Field I name");
+    for (field, lacks, key, what) in missing {
+        if lacks && recorded.contains(&field) {
+            remarks.push(format!("its header has no `{key}`: {what} are left out"));
+        }
     }
     match header.firmware() {
         "Betaflight" => {}

@@ -47,6 +47,13 @@ impl<'a> Header<'a> {
         revision.split(' ').next().unwrap_or_default()
     }
 
+    /// Main and minor version of a Betaflight, `[2025, 12]` since it counts years.
+    pub fn betaflight(&self) -> Option<[u32; 2]> {
+        let version = self.text("Firmware revision")?.strip_prefix("Betaflight ")?.split([' ', '-']).next()?;
+        let mut numbers = version.split('.').map(|number| number.parse().ok());
+        Some([numbers.next()??, numbers.next()??])
+    }
+
     pub fn inav(&self) -> bool {
         self.firmware() == "INAV"
     }

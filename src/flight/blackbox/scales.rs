@@ -4,6 +4,12 @@ use super::header::Header;
 use crate::base::check::BadInput;
 use std::f64::consts::TAU;
 
+/// The output that stops a motor which idles at this one: digital protocols command from 48 to 2047, others by pulses
+/// of 1000 to 2000 us.
+pub fn motor_stop(idle: f64) -> f64 {
+    if idle < 900.0 { 48.0 } else { 1000.0 }
+}
+
 impl Header<'_> {
     fn numbers<const N: usize>(&self, key: &str) -> Option<[f64; N]> {
         let mut numbers = self.text(key)?.split(',').map(|number| number.trim().parse().ok());
@@ -28,12 +34,12 @@ impl Header<'_> {
         self.positive("acc_1G", one_g.map(|[one_g]| 9.80665 / one_g), place)
     }
 
-    /// Outputs that stop a motor and that drive it fully.
-    pub fn motor_range(&self, place: &str) -> Result<[f64; 2], BadInput> {
+    /// Outputs that stop a motor and that drive it fully. The header has the one at which it idles, above the stop.
+    pub fn motor_range(&self) -> Option<[f64; 2]> {
         let throttle = || Some([self.numbers::<1>("minthrottle")?[0], self.numbers::<1>("maxthrottle")?[0]]);
-        let range = self.numbers("motorOutput").or_else(throttle).unwrap_or([f64::NAN; 2]);
-        self.positive("motorOutput", Some(range[1] - range[0]), place)?;
-        Ok(range)
+        let [idle, full] = self.numbers("motorOutput").or_else(throttle)?;
+        let stop = motor_stop(idle);
+        (full > idle && full > stop).then_some([stop, full])
     }
 
     /// V a count: 0.01, or 0.1 in old Betaflight, which the limits of a cell tell; before that what the converter gave.
@@ -44,9 +50,9 @@ impl Header<'_> {
     }
 
     /// rad/s of the rotor a count, which is a hundred electrical revolutions a minute.
-    pub fn rotor_speed_scale_rad_s(&self, place: &str) -> Result<f64, BadInput> {
-        let pairs = self.numbers::<1>("motor_poles").map(|[poles]| poles / 2.0);
-        self.positive("motor_poles", pairs.map(|pairs| 100.0 * TAU / 60.0 / pairs), place)
+    pub fn rotor_speed_scale_rad_s(&self) -> Option<f64> {
+        let [poles] = self.numbers::<1>("motor_poles").filter(|[poles]| *poles > 0.0)?;
+        Some(100.0 * TAU / 60.0 / (poles / 2.0))
     }
 
     /// m a count. Betaflight logs decimetres, INAV metres.
@@ -111,9 +117,11 @@ mod tests {
         let header = Header::of(b"H acc_1G:0\nH gyro_scale:0x3f800000\nH motor_poles:14\nI");
         assert_eq!(header.gyro_scale_rad_s("f").unwrap(), 1f64.to_radians());
         assert!(header.acceleration_scale_m_s2("f").unwrap_err().to_string().contains("acc_1G"));
-        assert!(header.motor_range("f").unwrap_err().to_string().contains("motorOutput"));
+        assert_eq!(header.motor_range(), None);
+        assert_eq!(Header::of(b"H motorOutput:158,2047\n").motor_range(), Some([48.0, 2047.0]));
+        assert_eq!(Header::of(b"H minthrottle:1070\nH maxthrottle:2000\n").motor_range(), Some([1000.0, 2000.0]));
         // 7 pairs of poles: 60 000 electrical revolutions a minute are 8571 of the rotor.
-        assert!((600.0 * header.rotor_speed_scale_rad_s("f").unwrap() - 897.6).abs() < 0.1);
+        assert!((600.0 * header.rotor_speed_scale_rad_s().unwrap() - 897.6).abs() < 0.1);
     }
 
     #[test]
