@@ -4,8 +4,8 @@
 //! The table "main" has the fields of main frames under their own names, in rad/s, m/s2, V, A and, for throttle and
 //! motors, 0..1 from stop to full, eRPM of the rotor in rad/s; other fields as they are. "gps" has those of GPS frames,
 //! `east` and `north` of the first of them in m, and `velocity_east`, `velocity_north` and `velocity_up` in m/s.
-//! "attitude" has `qw` to `qz`, front-left-up to east-north-up, where it was logged. "states" has `armed`, "slow" flight
-//! modes and the like, "events" the number of each [`event::Event`] and what it says.
+//! "attitude" has `qw` to `qz`, front-left-up to east-north-up, where it was logged. "states" has `armed`, "slow" has
+//! flight modes and the like, "events" the number of each [`event::Event`] and what it says.
 
 mod armed;
 mod attitude;
