@@ -8,7 +8,10 @@
 //! Everything called inside a [`Kernel`] must be `#[inline(always)]`, or wrapped in [`Real::vectorize`]: a function
 //! that is compiled on its own does not know which instructions it may use.
 
+mod block;
 pub mod math;
+#[cfg(target_arch = "aarch64")]
+mod neon;
 mod portable;
 #[cfg(target_arch = "x86_64")]
 mod x86;
@@ -307,6 +310,8 @@ pub enum Level {
     Avx512,
     /// Two 256-bit registers a block, fused multiply-add.
     Avx2,
+    /// Four 128-bit registers of a 64-bit Arm a block, fused multiply-add.
+    Neon,
     /// Four 128-bit registers a block, which every x86-64 has; elsewhere what the compiler makes of a loop over 16
     /// numbers. Multiply-add is not fused.
     Portable,
@@ -315,7 +320,7 @@ pub enum Level {
 impl Level {
     /// All levels this CPU can run, best first.
     pub fn available() -> Vec<Level> {
-        [Level::Avx512, Level::Avx2, Level::Portable].into_iter().filter(|l| l.is_available()).collect()
+        [Level::Avx512, Level::Avx2, Level::Neon, Level::Portable].into_iter().filter(|l| l.is_available()).collect()
     }
 
     /// The best level of this CPU.
@@ -331,6 +336,7 @@ impl Level {
             Level::Avx2 => x86::has_avx2(),
             #[cfg(not(target_arch = "x86_64"))]
             Level::Avx512 | Level::Avx2 => false,
+            Level::Neon => cfg!(target_arch = "aarch64"),
             Level::Portable => true,
         }
     }
@@ -341,6 +347,7 @@ impl fmt::Display for Level {
         f.write_str(match self {
             Level::Avx512 => "AVX-512",
             Level::Avx2 => "AVX2",
+            Level::Neon => "NEON",
             Level::Portable => "portable",
         })
     }
@@ -368,6 +375,13 @@ pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
             #[inline(always)]
             || kernel.run::<x86::Sse2>(),
         ),
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon => neon::Neon::vectorize(
+            #[inline(always)]
+            || kernel.run::<neon::Neon>(),
+        ),
+        #[cfg(target_arch = "x86_64")]
+        Level::Neon => unreachable!("not available"),
         #[cfg(not(target_arch = "x86_64"))]
         _ => kernel.run::<Portable<f32>>(),
     }
