@@ -40,11 +40,11 @@ macro_rules! operator {
 }
 pub(super) use operator;
 
-/// Block, words and truth values of `$n` registers, out of the operations in scope: on numbers `R`, truth values `T` and
-/// words `W`.
+/// Block, words and truth values of `$n` registers, out of the operations in scope: on numbers `R`, truth values `T`
+/// and words `W`.
 macro_rules! block {
-    ($block:ident, $words:ident, $truth:ident, $n:tt registers, fuses: $fuses:literal, tile: $rows:literal x $blocks:literal,
-     compiled: #[$compiled:meta]) => {
+    ($block:ident, $words:ident, $truth:ident, $n:tt registers, fuses: $fuses:literal,
+     tile: $rows:literal x $blocks:literal, compiled: #[$compiled:meta]) => {
         use $crate::base::lane::block::{operator, registers};
         use $crate::base::lane::{Bits, Lane, Lane32, Mask, Real, Single, Tiled, Word, math};
 
