@@ -5,6 +5,7 @@ mod check;
 mod columns;
 mod diagnose;
 mod eval;
+mod export;
 mod extend;
 mod findings;
 mod fly;
@@ -43,6 +44,7 @@ enum Command {
     Eval(eval::Args),
     Fly(fly::Args),
     Replay(replay::Args),
+    Export(export::Args),
     Track(track::Args),
     Import(import::Args),
     Check(check::Args),
@@ -99,6 +101,7 @@ pub fn main() -> ExitCode {
         Command::Eval(args) => eval::run(&args),
         Command::Fly(args) => fly::run(&args),
         Command::Replay(args) => replay::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Track(args) => track::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),

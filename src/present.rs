@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod colour;
+pub mod export;
 pub mod replay;
 pub mod report;
 pub mod retrain;

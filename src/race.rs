@@ -5,6 +5,7 @@ pub mod config;
 pub mod env;
 pub mod eval;
 pub mod heat;
+pub mod onboard;
 pub mod reference;
 pub mod simulation;
 pub mod snapshot;

@@ -13,6 +13,7 @@ use crate::model::dynamics::State;
 use crate::model::thrust::specific_thrust;
 use crate::model::vehicle::Vehicle;
 use crate::race::env::Race;
+use crate::race::env::reset::StartPlace;
 use crate::race::env::terminate::CAUSES;
 use crate::race::heat;
 use recorder::Recorder;
@@ -105,7 +106,16 @@ pub fn by_policy(
     seconds: f64,
 ) -> Flown {
     let steps = (seconds / race.dt).round() as usize;
-    let fly = heat::Heat { race, network, first: 0, vehicles: 1, steps, gates: usize::MAX, seen: false };
+    let fly = heat::Heat {
+        race,
+        network,
+        place: StartPlace::Pad,
+        first: 0,
+        vehicles: 1,
+        steps,
+        gates: usize::MAX,
+        seen: false,
+    };
     let raced = dispatch(level, fly).remove(0);
     let mut recorder = Recorder::new(&race.vehicle, sensors, seed);
     for (craft, command, _) in &raced.steps {

@@ -231,9 +231,24 @@ impl<L: Lane32> Block<L> {
                 } else {
                     None
                 };
-                observe::observe(self, noise.as_ref(), race.voltage_scale, out, stride);
+                observe::observe(&self.seen(), noise.as_ref(), race.voltage_scale, out, stride);
             },
         )
+    }
+
+    /// What its observations are made of.
+    #[inline(always)]
+    fn seen(&self) -> observe::Seen<'_, L> {
+        observe::Seen {
+            gate: &self.gate,
+            in_gate: self.in_gate,
+            velocity: self.craft.state.velocity,
+            attitude: self.craft.state.attitude,
+            body_rates: self.craft.body_rates(),
+            command: &self.craft.state.command,
+            history: &self.history,
+            voltage: self.craft.terminal_voltage(),
+        }
     }
 
     /// One step under `action`, as the policy gave it. Ended episodes stay as they ended.

@@ -1,4 +1,4 @@
-//! A few vehicles' races from the pad, step by step.
+//! A few vehicles' races, step by step.
 
 use crate::base::lane::{Kernel, LANES, Lane32, build};
 use crate::base::rng::Stream;
@@ -18,6 +18,8 @@ pub const MOST: usize = LANES;
 pub struct Heat<'a> {
     pub race: &'a Race,
     pub network: &'a Network<f32>,
+    /// Where the races begin.
+    pub place: StartPlace,
     pub first: usize,
     pub vehicles: usize,
     pub steps: usize,
@@ -44,14 +46,14 @@ impl Kernel for Heat<'_> {
 
     #[inline(always)]
     fn run<L: Lane32>(self) -> Vec<Raced> {
-        let Heat { race, network, first, vehicles, steps, gates, seen: keep } = self;
+        let Heat { race, network, place, first, vehicles, steps, gates, seen: keep } = self;
         let mut block: Block<L> = race.empty_block(0);
         let mut out = Vec::with_capacity(LANES);
         for lane in 0..LANES {
             // Lanes that nobody looks at fly as the first does.
             let vehicle = if lane < vehicles { first + lane } else { first };
             let mut rng = race.rng.sequence(Stream::Evaluation, vehicle as u32, 0);
-            let start = reset::draw(race, &mut rng, StartPlace::Pad, (vehicle == 0).then_some(Factors::NOMINAL));
+            let start = reset::draw(race, &mut rng, place, (vehicle == 0).then_some(Factors::NOMINAL));
             block.begin(race, lane, &start);
             out.push(Raced { steps: Vec::new(), seen: Vec::new(), passes: Vec::new(), failure: None });
         }

@@ -1,23 +1,27 @@
 //! A policy on disk: the network as safetensors, with everything needed to fly it again in the same file.
 
+mod describe;
 mod metadata;
-mod self_test;
+mod seen;
+pub mod self_test;
 mod tensors;
 
 use crate::base::check::{BadInput, Check, Invalid};
 use crate::base::error::Error;
 use crate::base::fsio;
 use crate::learn::nn::Network;
-use crate::learn::policy::ACTIONS;
 use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
-use crate::race::env::observe::OBSERVATIONS;
 use crate::race::env::{EnvConfig, Race};
 use crate::race::eval::EvalConfig;
-use safetensors::tensor::{Dtype, SafeTensors, TensorView, serialize};
+use crate::race::onboard::Surroundings;
+use safetensors::tensor::{SafeTensors, TensorView, serialize};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::Path;
+
+pub use self_test::Rows;
+pub use tensors::Tensor;
 
 /// A policy and where it comes from.
 #[derive(Clone, Debug)]
@@ -36,7 +40,8 @@ pub struct About {
     pub seed: u64,
     /// Environment steps it was trained for.
     pub steps: u64,
-    /// Training time, s.
+    /// Training time, s. Not in the file: the same training is to give the same bytes.
+    #[serde(skip)]
     pub seconds: f64,
 }
 
@@ -62,23 +67,28 @@ impl Snapshot {
         fsio::write_new(path, &self.to_bytes()?).map_err(Error::write(path))
     }
 
+    /// What is in the file.
+    pub fn content(&self) -> Result<Content, Error> {
+        let About { track, vehicle, eval, .. } = &self.about;
+        let flight = self_test::fly(&self.network, track, vehicle, eval.max_steps);
+        let steps = self_test::window(&flight.steps);
+        let flying = describe::flying(&describe::Shown {
+            network: &self.network,
+            about: &self.about,
+            range: seen::ranges(&self.race(None), &self.network),
+            steps,
+            lap_s: flight.lap_s,
+        });
+        let metadata = metadata::write(&self.about, flying).map_err(Error::encode("the policy"))?;
+        let rows = Rows::of(steps);
+        let mut tensors = tensors::of(&self.network);
+        tensors.extend(tensors::of_rows(&rows));
+        Ok(Content { metadata, rows, tensors })
+    }
+
     /// The file's content; the same policy always gives the same bytes.
     pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
-        let (observations, actions) = self_test::vectors(&self.network);
-        let mut all: Vec<(String, Vec<usize>, Vec<u8>)> = tensors::of(&self.network)
-            .into_iter()
-            .map(|(name, shape, numbers)| (name, shape, tensors::bytes(&numbers)))
-            .collect();
-        let samples = self_test::SAMPLES;
-        all.push(("self_test.observation".into(), vec![samples, OBSERVATIONS], tensors::bytes(&observations)));
-        all.push(("self_test.action".into(), vec![samples, ACTIONS], tensors::bytes(&actions)));
-        let views: Result<Vec<_>, _> = all
-            .iter()
-            .map(|(name, shape, bytes)| Ok((name, TensorView::new(Dtype::F32, shape.clone(), bytes)?)))
-            .collect::<Result<_, safetensors::SafeTensorError>>();
-        let metadata = metadata::write(&self.about).map_err(Error::encode("the policy"))?;
-        let file = views.and_then(|views| serialize(views, Some(HashMap::from([(METADATA.into(), metadata)]))));
-        file.map_err(Error::encode("the policy"))
+        self.content()?.to_bytes()
     }
 
     /// Reads a file, and makes sure that the network still answers as it did when it was written.
@@ -93,21 +103,45 @@ impl Snapshot {
 
     /// Reads the content of a file.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Invalid> {
-        let about = read_about(bytes)?;
+        let (version, about) = read_about(bytes)?;
         let file = SafeTensors::deserialize(bytes).map_err(|error| Invalid::new("file", error, "", ""))?;
         let network = tensors::read_network(&file)?;
-        let samples = self_test::SAMPLES;
-        let observations = tensors::read(&file, "self_test.observation", &[samples, OBSERVATIONS])?;
-        let actions = tensors::read(&file, "self_test.action", &[samples, ACTIONS])?;
-        self_test::check(&network, &observations, &actions)?;
+        if version < 3 {
+            let (observations, actions) = tensors::read_answers(&file)?;
+            self_test::check_network(&network, &observations, &actions)?;
+        } else {
+            tensors::read_rows(&file)?.check(&network, &Surroundings::of(&about.track, &about.vehicle))?;
+        }
         Ok(Self { network, about })
+    }
+}
+
+/// A policy's file before it becomes bytes.
+#[derive(Clone, Debug)]
+pub struct Content {
+    /// JSON.
+    pub metadata: String,
+    pub rows: Rows,
+    pub tensors: Vec<Tensor>,
+}
+
+impl Content {
+    /// As safetensors.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
+        let views: Result<Vec<_>, _> = self
+            .tensors
+            .iter()
+            .map(|t| Ok((&t.name, TensorView::new(t.kind, t.shape.clone(), &t.bytes)?)))
+            .collect::<Result<_, safetensors::SafeTensorError>>();
+        let metadata = HashMap::from([(METADATA.to_string(), self.metadata.clone())]);
+        views.and_then(|views| serialize(views, Some(metadata))).map_err(Error::encode("the policy"))
     }
 }
 
 /// The metadata's only key: safetensors keeps no order among several, and files are to repeat bit for bit.
 const METADATA: &str = "racer";
 
-fn read_about(bytes: &[u8]) -> Result<About, Invalid> {
+fn read_about(bytes: &[u8]) -> Result<(u32, About), Invalid> {
     let advice = "name a run folder, or a file in its snapshots/";
     let (_, header) = SafeTensors::read_metadata(bytes).map_err(|error| Invalid::new("file", error, "", advice))?;
     let text = header.metadata().as_ref().and_then(|map| map.get(METADATA));
@@ -120,13 +154,14 @@ mod tests {
     use super::*;
     use crate::base::rng::{Philox, Stream};
     use crate::race::config::Setup;
+    use crate::race::env::observe::OBSERVATIONS;
 
     fn snapshot() -> Snapshot {
         let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).unwrap();
         let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(Stream::Weights, 0, 0));
         Snapshot {
             network,
-            about: About { track, vehicle, env: config.env, eval: config.eval, seed: 3, steps: 7, seconds: 0.1 },
+            about: About { track, vehicle, env: config.env, eval: config.eval, seed: 3, steps: 7, seconds: 0.0 },
         }
     }
 

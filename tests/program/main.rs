@@ -4,6 +4,7 @@ mod cli;
 mod criteria;
 mod diagnose_report;
 mod examples;
+mod export;
 mod identify;
 mod import;
 mod library;

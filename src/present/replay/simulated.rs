@@ -5,6 +5,7 @@ use crate::base::lane::{Level, dispatch};
 use crate::learn::nn::Network;
 use crate::model::track::Track;
 use crate::race::env::Race;
+use crate::race::env::reset::StartPlace;
 use crate::race::env::terminate::CAUSES;
 use crate::race::heat::{Heat, Raced};
 
@@ -23,7 +24,10 @@ pub fn race(
     let race = race.scored(track);
     let steps = (seconds / race.dt).round() as usize;
     let gates = if one_lap { track.gates.len() + 1 } else { usize::MAX };
-    let raced = dispatch(level, Heat { race: &race, network, first: 0, vehicles, steps, gates, seen: true });
+    let raced = dispatch(
+        level,
+        Heat { race: &race, network, place: StartPlace::Pad, first: 0, vehicles, steps, gates, seen: true },
+    );
     let name = |i: usize| if i == 0 { race.vehicle.name.clone() } else { format!("randomised {i}") };
     let vehicles = raced.iter().enumerate().map(|(i, raced)| vehicle(name(i), raced, track, race.dt)).collect();
     Replay {

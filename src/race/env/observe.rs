@@ -3,10 +3,10 @@
 //! [`LAYOUT`] is the only place that says what an observation holds: the simulator, the documentation of a run and the
 //! export of a policy all read it.
 
-use super::Block;
+use super::gates::GateFrame;
 use super::noise::Noise;
 use crate::base::lane::{Lane, build, each};
-use crate::model::attitude::{body_axes, cross};
+use crate::model::attitude::{Quaternion, body_axes, cross};
 use crate::model::vehicle::Battery;
 
 /// Consecutive entries of the observation that belong together.
@@ -17,6 +17,8 @@ pub struct Group {
     pub entries: &'static [&'static str],
     pub unit: &'static str,
     pub frame: &'static str,
+    /// How the values follow from what a flight computer knows; the letters are those of `Snapshot`'s description.
+    pub formula: &'static str,
     /// An entry is (value - offset) * scale.
     pub offset: f64,
     pub scale: f64,
@@ -30,25 +32,33 @@ const fn group(
     entries: &'static [&'static str],
     unit: &'static str,
     frame: &'static str,
+    formula: &'static str,
     scale: f64,
 ) -> Group {
-    Group { name, entries, unit, frame, offset: 0.0, scale }
+    Group { name, entries, unit, frame, formula, offset: 0.0, scale }
 }
 
 /// The observation's groups in order. "gate" is the frame of the target gate: x along the direction of crossing, y
 /// left, z up, origin at its centre.
 pub const LAYOUT: [Group; 11] = [
-    group("position", XYZ, "m", "gate", 0.1),
-    group("velocity", XYZ, "m/s", "gate", 0.1),
-    group("attitude", &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"], "1", "body axes in gate", 1.0),
-    group("angular_rate", XYZ, "rad/s", "gate", 0.1),
-    group("command", COMMANDS, "1", "filtered command u", 1.0),
-    group("action_1", COMMANDS, "1", "action one step ago", 1.0),
-    group("action_2", COMMANDS, "1", "action two steps ago", 1.0),
-    group("action_3", COMMANDS, "1", "action three steps ago", 1.0),
-    group("voltage", &["V"], "V", "battery", 1.0), // offset and scale: see `layout`
-    group("next_gate", XYZ, "m", "gate", 0.1),
-    group("second_gate", XYZ, "m", "gate", 0.1),
+    group("position", XYZ, "m", "gate", "G (p - c)", 0.1),
+    group("velocity", XYZ, "m/s", "gate", "G v", 0.1),
+    group(
+        "attitude",
+        &["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"],
+        "1",
+        "body axes in gate",
+        "G R, column after column: the body's x axis in the gate frame, then its y axis, then its z axis",
+        1.0,
+    ),
+    group("angular_rate", XYZ, "rad/s", "gate", "G R w", 0.1),
+    group("command", COMMANDS, "1", "filtered command u", "u", 1.0),
+    group("action_1", COMMANDS, "1", "action one step ago", "the policy's own answer one step ago", 1.0),
+    group("action_2", COMMANDS, "1", "action two steps ago", "the policy's own answer two steps ago", 1.0),
+    group("action_3", COMMANDS, "1", "action three steps ago", "the policy's own answer three steps ago", 1.0),
+    group("voltage", &["V"], "V", "battery", "V", 1.0), // offset and scale: see `layout`
+    group("next_gate", XYZ, "m", "gate", "G (c1 - c)", 0.1),
+    group("second_gate", XYZ, "m", "gate", "G (c2 - c)", 0.1),
 ];
 
 /// Index of the group whose offset and scale depend on the vehicle.
@@ -82,6 +92,27 @@ pub const OBSERVATIONS: usize = {
     n
 };
 
+/// Where the group `name` begins in an observation.
+pub const fn first_entry(name: &str) -> usize {
+    let (mut n, mut i) = (0, 0);
+    while i < LAYOUT.len() {
+        if same(LAYOUT[i].name.as_bytes(), name.as_bytes()) {
+            return n;
+        }
+        n += LAYOUT[i].entries.len();
+        i += 1;
+    }
+    panic!("no such group")
+}
+
+const fn same(a: &[u8], b: &[u8]) -> bool {
+    let mut i = 0;
+    while i < a.len() && i < b.len() && a[i] == b[i] {
+        i += 1;
+    }
+    i == a.len() && i == b.len()
+}
+
 #[inline(always)]
 fn add<L: Lane>(a: [L; 3], b: [L; 3]) -> [L; 3] {
     build!(|i| a[i] + b[i])
@@ -102,26 +133,44 @@ const SCALES: [(f32, f32); OBSERVATIONS] = {
     all
 };
 
-/// Writes the observation of the 16 lanes of `block`, entry `k` to `out[k * stride..]`, with `noise` on what an
-/// estimator would have to estimate. `voltage_scale` is the offset and scale of the voltage.
+/// What an observation is made of, of 16 vehicles.
+pub struct Seen<'a, L> {
+    /// The target gates, and the positions in their frames, m.
+    pub gate: &'a GateFrame<L>,
+    pub in_gate: [L; 3],
+    /// World, m/s.
+    pub velocity: [L; 3],
+    /// Body to world.
+    pub attitude: Quaternion<L>,
+    /// About the body's axes, rad/s.
+    pub body_rates: [L; 3],
+    /// Filtered commands, and the last three actions, newest first.
+    pub command: &'a [L; 4],
+    pub history: &'a [[L; 4]; 3],
+    /// Of the battery's terminals, V.
+    pub voltage: L,
+}
+
+/// Writes the observation of 16 lanes, entry `k` to `out[k * stride..]`, with `noise` on what an estimator would have
+/// to estimate. `voltage_scale` is the offset and scale of the voltage.
 #[inline(always)]
 pub fn observe<L: Lane<Elem = f32>>(
-    block: &Block<L>,
+    seen: &Seen<L>,
     noise: Option<&Noise<L>>,
     voltage_scale: [f64; 2],
     out: &mut [f32],
     stride: usize,
 ) {
-    let gate = &block.gate;
-    let mut position = block.in_gate;
-    let mut velocity = gate.rotate(block.craft.state.velocity);
-    let axes = body_axes(block.craft.state.attitude);
+    let gate = seen.gate;
+    let mut position = seen.in_gate;
+    let mut velocity = gate.rotate(seen.velocity);
+    let axes = body_axes(seen.attitude);
     let mut attitude = each!(axes, |axis| gate.rotate(axis));
-    let body_rates = block.craft.body_rates();
+    let body_rates = seen.body_rates;
     let mut rates: [L; 3] = build!(|i| {
         attitude[0][i].mul_add(body_rates[0], attitude[1][i].mul_add(body_rates[1], attitude[2][i] * body_rates[2]))
     });
-    let mut voltage = block.craft.terminal_voltage();
+    let mut voltage = seen.voltage;
     if let Some(noise) = noise {
         position = add(position, noise.position);
         velocity = add(velocity, noise.velocity);
@@ -135,10 +184,10 @@ pub fn observe<L: Lane<Elem = f32>>(
         &velocity,
         attitude,
         &rates,
-        &block.craft.state.command,
-        &block.history[0],
-        &block.history[1],
-        &block.history[2],
+        seen.command,
+        &seen.history[0],
+        &seen.history[1],
+        &seen.history[2],
         &[(voltage - L::of(voltage_scale[0])) * L::of(voltage_scale[1])],
         &gate.next[0],
         &gate.next[1],

@@ -6,6 +6,7 @@ use crate::base::stats::quantile;
 use crate::learn::nn::Network;
 use crate::model::track::Track;
 use crate::race::env::Race;
+use crate::race::env::reset::StartPlace;
 use crate::race::heat::{Heat, MOST, Raced};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -65,7 +66,19 @@ pub fn spread(
         .map(|block| {
             let (first, gates) = (block * MOST, track.gates.len() + 1);
             let vehicles = MOST.min(all - first);
-            dispatch(level, Heat { race: &race, network, first, vehicles, steps: max_steps, gates, seen: false })
+            dispatch(
+                level,
+                Heat {
+                    race: &race,
+                    network,
+                    place: StartPlace::Pad,
+                    first,
+                    vehicles,
+                    steps: max_steps,
+                    gates,
+                    seen: false,
+                },
+            )
         })
         .collect();
     let raced: Vec<Raced> = blocks.into_iter().flatten().collect();

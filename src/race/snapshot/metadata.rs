@@ -1,22 +1,24 @@
 //! What stands beside the weights: what whoever flies the policy has to know, and apart from it what it was trained on.
 //!
-//! Version 1, up to racer at commit 73e7003, had both in one table, with the training as `about`. In every version a
-//! key that is missing because it came later has its old meaning ([`later`]).
+//! Version 1, up to racer at commit 73e7003, had both in one table, with the training as `about`. Version 2 had them
+//! apart and said of flying only the rate, the observation's layout and the actions' names. Version 3 says all that
+//! flying takes ([`super::describe`]), and no longer how long the training took, so that a training repeats bit for
+//! bit: an older racer would refuse both, hence a version. In every version a key that is missing because it came
+//! later has its old meaning ([`later`]).
 
 use super::About;
+use super::describe::{ACTION_NAMES, control_rate_hz};
 use crate::base::check::{Check, Invalid};
-use crate::learn::policy::ACTIONS;
-use crate::model::constants::CONTROL_S;
 use crate::model::vehicle::Vehicle;
 use crate::race::config::later;
 use crate::race::env::observe::layout;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
-/// A format is this and a version. The version changes where an older racer would misread the file.
+/// A format is this and a version. The version changes where an older racer would misread or refuse the file.
 const FORMAT: &str = "racer-policy-";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// This program.
 const RACER: &str = env!("CARGO_PKG_VERSION");
 
@@ -25,28 +27,39 @@ struct Metadata<'a> {
     format: String,
     /// Version of the program that wrote it.
     racer: &'a str,
-    flying: Flying,
+    flying: Value,
     training: &'a About,
 }
 
-/// What a flight controller, or any other program, needs to ask the policy.
-#[derive(Serialize, Deserialize)]
-struct Flying {
-    /// Rate at which the policy is to be asked, Hz.
-    control_rate_hz: f64,
-    /// What goes in: [`layout`].
+/// What every version says of asking the policy: the part that this racer must agree with.
+#[derive(Debug, PartialEq)]
+struct Meaning {
+    control_rate_hz: Value,
+    /// Name, entries, unit, frame, offset and scale of each group.
     observation: Value,
-    /// What comes out, after the tanh, each in [-1, 1].
-    action: [String; ACTIONS],
+    /// Names.
+    action: Value,
 }
 
-impl Flying {
-    /// Of this version's policies for `vehicle`, whose battery scales the voltage.
+impl Meaning {
+    /// This version's, for `vehicle`, whose battery scales the voltage.
     fn of(vehicle: &Vehicle) -> Self {
+        let observation = serde_json::to_value(layout(&vehicle.battery)).unwrap_or_default();
+        Self::told(&json!({
+            "control_rate_hz": control_rate_hz(), "observation": observation, "action": ACTION_NAMES,
+        }))
+    }
+
+    /// As a file of any version tells it.
+    fn told(flying: &Value) -> Self {
+        let list = |key: &str| flying[key].as_array().cloned().unwrap_or_default();
+        let group =
+            |group: Value| ["name", "entries", "unit", "frame", "offset", "scale"].map(|key| group[key].clone());
+        let name = |action: Value| if action.is_object() { action["name"].clone() } else { action };
         Self {
-            control_rate_hz: (1.0 / CONTROL_S).round(),
-            observation: serde_json::to_value(layout(&vehicle.battery)).unwrap_or_default(),
-            action: ["roll rate", "pitch rate", "yaw rate", "collective thrust"].map(String::from),
+            control_rate_hz: json!(flying["control_rate_hz"].as_f64()),
+            observation: list("observation").into_iter().map(|one| json!(group(one))).collect(),
+            action: list("action").into_iter().map(name).collect(),
         }
     }
 
@@ -54,13 +67,8 @@ impl Flying {
     fn check(&self, vehicle: &Vehicle) -> Result<(), Invalid> {
         let ours = Self::of(vehicle);
         let refuse = |ok: bool, key: &str, what: &str| {
-            Invalid::unless(
-                ok,
-                key,
-                format!("another {what} than this version's"),
-                "",
-                "fly it with the racer that trained it",
-            )
+            let found = format!("another {what} than this version's");
+            Invalid::unless(ok, key, found, "", "fly it with the racer that trained it")
         };
         refuse(self.control_rate_hz == ours.control_rate_hz, "control_rate_hz", "control rate")?;
         refuse(self.observation == ours.observation, "observation", "observation layout")?;
@@ -68,30 +76,28 @@ impl Flying {
     }
 }
 
-/// The metadata of a policy, as JSON.
-pub fn write(about: &About) -> serde_json::Result<String> {
-    let flying = Flying::of(&about.vehicle);
+/// The metadata of a policy, as JSON, with what [`super::describe`] says of flying it.
+pub fn write(about: &About, flying: Value) -> serde_json::Result<String> {
     serde_json::to_string(&Metadata { format: format!("{FORMAT}{VERSION}"), racer: RACER, flying, training: about })
 }
 
-/// Reads the metadata of this version or an older one.
-pub fn read(text: &str) -> Result<About, Invalid> {
+/// Reads the metadata of this version or an older one: the version, and what the policy was trained on.
+pub fn read(text: &str) -> Result<(u32, About), Invalid> {
     let other = |found: String| Invalid::new("", found, "", "name a policy that `racer train` wrote");
     let mut metadata: Value = serde_json::from_str(text).map_err(|error| other(error.to_string()))?;
     let format = metadata["format"].as_str().unwrap_or_default();
     let version = format.strip_prefix(FORMAT).and_then(|version| version.parse().ok());
     let writer = metadata["racer"].as_str().unwrap_or("an older version").to_string();
-    let (flying, training) = match version {
-        Some(1) => (metadata.clone(), metadata["about"].take()),
-        Some(2) => (metadata["flying"].take(), metadata["training"].take()),
+    let (version, flying, training) = match version {
+        Some(1) => (1, metadata.clone(), metadata["about"].take()),
+        Some(version @ 2..=VERSION) => (version, metadata["flying"].take(), metadata["training"].take()),
         Some(version) if version > VERSION => return Err(newer(version, &writer)),
         _ => return Err(other(format!("format {:?}", metadata["format"]))),
     };
-    let flying: Flying = decode(flying, &writer).map_err(|invalid| invalid.within("flying"))?;
     let about: About = decode(completed(training), &writer).map_err(|invalid| invalid.within("training"))?;
     about.check().map_err(|invalid| invalid.within("training"))?;
-    flying.check(&about.vehicle).map_err(|invalid| invalid.within("flying"))?;
-    Ok(about)
+    Meaning::told(&flying).check(&about.vehicle).map_err(|invalid| invalid.within("flying"))?;
+    Ok((version, about))
 }
 
 fn newer(version: u32, writer: &str) -> Invalid {
@@ -126,33 +132,45 @@ mod tests {
 
     fn about() -> About {
         let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).unwrap();
-        About { track, vehicle, env: config.env, eval: config.eval, seed: 3, steps: 7, seconds: 0.1 }
+        About { track, vehicle, env: config.env, eval: config.eval, seed: 3, steps: 7, seconds: 0.0 }
+    }
+
+    /// Without what only others read.
+    fn flying() -> Value {
+        let observation = layout(&about().vehicle.battery);
+        json!({ "control_rate_hz": control_rate_hz(), "observation": observation, "action": ACTION_NAMES })
     }
 
     /// The complaint about the metadata after `change`.
     fn refused(change: impl FnOnce(&mut Value)) -> String {
-        let mut metadata: Value = serde_json::from_str(&write(&about()).unwrap()).unwrap();
+        let mut metadata: Value = serde_json::from_str(&write(&about(), flying()).unwrap()).unwrap();
         change(&mut metadata);
         let Invalid { key, found, advice, .. } = read(&metadata.to_string()).unwrap_err();
         format!("{key}: {found}; {advice}")
     }
 
     #[test]
-    fn version_1_had_it_all_in_one_table() {
-        let mut metadata: Value = serde_json::from_str(&write(&about()).unwrap()).unwrap();
+    fn version_1_had_it_all_in_one_table_and_version_2_the_time_of_the_training() {
+        let mut metadata: Value = serde_json::from_str(&write(&about(), flying()).unwrap()).unwrap();
         let mut old = metadata["flying"].take();
         old["format"] = json!("racer-policy-1");
         old["about"] = metadata["training"].take();
-        assert_eq!(read(&old.to_string()).unwrap(), about());
+        assert_eq!(read(&old.to_string()).unwrap(), (1, about()));
+
+        let mut metadata: Value = serde_json::from_str(&write(&about(), flying()).unwrap()).unwrap();
+        assert_eq!(metadata["training"].get("seconds"), None);
+        metadata["format"] = json!("racer-policy-2");
+        metadata["training"]["seconds"] = json!(60.1);
+        assert_eq!(read(&metadata.to_string()).unwrap(), (2, about()));
     }
 
     #[test]
     fn what_is_newer_or_foreign_is_refused_with_what_to_do() {
         let newer = refused(|m| {
-            m["format"] = json!("racer-policy-3");
+            m["format"] = json!("racer-policy-4");
             m["racer"] = json!("9.8.7");
         });
-        assert!(newer.contains("racer-policy-3") && newer.contains("use a racer as new as 9.8.7"), "{newer}");
+        assert!(newer.contains("racer-policy-4") && newer.contains("use a racer as new as 9.8.7"), "{newer}");
         let key = refused(|m| m["training"]["env"]["reward"]["applause"] = json!(1.0));
         assert!(key.starts_with("training.env.reward") && key.contains("applause"), "{key}");
         let layout = refused(|m| m["flying"]["observation"][0]["scale"] = json!(0.2));
