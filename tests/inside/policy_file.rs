@@ -41,13 +41,12 @@ fn a_file_says_what_flying_it_takes_and_repeats() {
     assert!((test["lap_s"].as_f64().unwrap() - 1.784).abs() < 1e-3, "{test}");
     // What the policy sees in the nominal lap is inside the range that the file names.
     let groups = metadata["flying"]["observation"].as_array().unwrap();
-    let ends = |key: &str| -> Vec<f64> {
-        groups.iter().flat_map(|group| group[key].as_array().unwrap()).map(|x| x.as_f64().unwrap()).collect()
+    let ends = |key: &str| -> Vec<f32> {
+        groups.iter().flat_map(|group| group[key].as_array().unwrap()).map(|x| x.as_f64().unwrap() as f32).collect()
     };
     let (low, high) = (ends("low"), ends("high"));
     for row in &content.rows.observation {
         for (k, &x) in row.iter().enumerate() {
-            let x = f64::from(x);
             assert!(low[k] <= x && x <= high[k], "entry {k}: {x} is outside {} to {}", low[k], high[k]);
         }
     }

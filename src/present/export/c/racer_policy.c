@@ -5,6 +5,9 @@
 /* Beyond this a state or an observation is no number to compute with. */
 #define HUGE_NUMBER 1e6f
 
+/* What another order of operations may move an entry of the observation. */
+#define ROUNDING 1e-4f
+
 /* Absolute error below 7e-7, never outside -1..1. */
 static float racer_tanh(float x)
 {
@@ -167,7 +170,7 @@ static void observe(racer_pilot *pilot, const racer_state *state)
     pilot->outside = -1;
     for (int k = RACER_OBSERVATIONS - 1; k >= 0; k--) {
         out[k] = (out[k] - racer_offset[k]) * racer_scale[k];
-        if (!(out[k] >= racer_low[k] && out[k] <= racer_high[k])) {
+        if (!(out[k] >= racer_low[k] - ROUNDING && out[k] <= racer_high[k] + ROUNDING)) {
             pilot->outside = k;
         }
     }
