@@ -13,6 +13,7 @@ mod identify;
 mod import;
 mod interrupt;
 mod logs;
+mod pilot;
 mod progress;
 mod replay;
 mod report;
@@ -45,6 +46,7 @@ enum Command {
     Fly(fly::Args),
     Replay(replay::Args),
     Export(export::Args),
+    Pilot(pilot::Args),
     Track(track::Args),
     Import(import::Args),
     Check(check::Args),
@@ -102,6 +104,7 @@ pub fn main() -> ExitCode {
         Command::Fly(args) => fly::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Export(args) => export::run(&args),
+        Command::Pilot(args) => pilot::run(&args),
         Command::Track(args) => track::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),

@@ -6,6 +6,7 @@ pub mod blackbox;
 pub mod csv;
 pub mod fly;
 mod format;
+pub mod live;
 pub mod lowpass;
 pub mod mapping;
 pub mod mcap;

@@ -12,6 +12,7 @@ use crate::base::fsio;
 use crate::learn::nn::Network;
 use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
+use crate::race::env::observe::OBSERVATIONS;
 use crate::race::env::{EnvConfig, Race};
 use crate::race::eval::EvalConfig;
 use crate::race::onboard::Surroundings;
@@ -67,6 +68,11 @@ impl Snapshot {
         fsio::write_new(path, &self.to_bytes()?).map_err(Error::write(path))
     }
 
+    /// Least and greatest of every entry of the observation in flights as in training.
+    pub fn ranges(&self) -> [[f32; OBSERVATIONS]; 2] {
+        seen::ranges(&self.race(None), &self.network)
+    }
+
     /// What is in the file.
     pub fn content(&self) -> Result<Content, Error> {
         let About { track, vehicle, eval, .. } = &self.about;
@@ -75,7 +81,7 @@ impl Snapshot {
         let flying = describe::flying(&describe::Shown {
             network: &self.network,
             about: &self.about,
-            range: seen::ranges(&self.race(None), &self.network),
+            range: self.ranges(),
             steps,
             lap_s: flight.lap_s,
         });
@@ -154,7 +160,6 @@ mod tests {
     use super::*;
     use crate::base::rng::{Philox, Stream};
     use crate::race::config::Setup;
-    use crate::race::env::observe::OBSERVATIONS;
 
     fn snapshot() -> Snapshot {
         let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).unwrap();

@@ -13,6 +13,7 @@ mod golden_ppo;
 mod gradients;
 mod hidden_effects;
 mod lane;
+mod live;
 mod mappings;
 mod mcap;
 mod older;
