@@ -7,7 +7,7 @@ use crate::model::vehicle::Vehicle;
 use crate::race::env::observe::OBSERVATIONS;
 use crate::race::onboard::Estimate;
 
-/// Oldest state to fly by, s: five periods, half a metre at race speed.
+/// Oldest state to fly by, s: five periods, a metre at 20 m/s.
 pub const STALE_S: f64 = 0.05;
 /// Farthest from the pad to start, m, fastest, m/s, and largest angle to the pad's attitude, rad: within the spread
 /// that a vehicle put down by hand has.
