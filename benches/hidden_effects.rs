@@ -14,6 +14,8 @@ mod case;
 mod criteria;
 #[path = "hidden_effects/judge.rs"]
 mod judge;
+#[path = "hidden_effects/other.rs"]
+mod other;
 #[path = "hidden_effects/real.rs"]
 mod real;
 #[path = "hidden_effects/run.rs"]
@@ -46,6 +48,9 @@ fn main() {
         judged.extend(real::all(&args));
     }
     tables::print(&judged);
+    if let Some(path) = &args.csv {
+        other::write(path, &judged);
+    }
 }
 
 /// All drawn cases, `--jobs` at a time.
@@ -60,7 +65,10 @@ fn drawn(args: &Args) -> Vec<Judged> {
                     if number >= args.n {
                         return;
                     }
-                    let judged = run::case(&Case::draw(number, args), args);
+                    let judged = match args.tier {
+                        Tier::Other => other::case(number, args),
+                        _ => run::case(&Case::draw(number, args), args),
+                    };
                     println!("{number:>5}  {}", judged.line());
                     done.lock().expect("no thread panics with it").push((number, judged));
                 }

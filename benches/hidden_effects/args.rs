@@ -15,6 +15,8 @@ pub enum Tier {
     Clutter,
     /// Causes that the catalogue does not have
     Outside,
+    /// The catalogue's causes in a vehicle, and in forms, of other making
+    Other,
     /// Effects put into measured flights
     Real,
     /// Half matched, the rest of the other kinds, then the measured flights
@@ -65,8 +67,8 @@ pub struct Args {
     /// With `--criteria`: logs that an earlier run kept; without, `--n` are drawn
     #[arg(long, value_name = "DIR", requires = "criteria")]
     pub logs: Option<PathBuf>,
-    /// With `--criteria`: the table as CSV
-    #[arg(long, value_name = "FILE", requires = "criteria")]
+    /// Every log in a line of CSV; with `--criteria`, the table
+    #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
     /// The program [default: the one built with this]
     #[arg(long, value_name = "PATH", default_value = env!("CARGO_BIN_EXE_racer"))]

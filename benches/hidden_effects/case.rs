@@ -18,6 +18,8 @@ pub enum Group {
     Unmatched,
     Clutter,
     Outside,
+    /// Something that nobody would notice.
+    Small,
     Real,
 }
 
@@ -31,6 +33,7 @@ impl Group {
             Group::Unmatched => "unmatched",
             Group::Clutter => "clutter",
             Group::Outside => "outside",
+            Group::Small => "small",
             Group::Real => "real",
         }
     }
@@ -84,7 +87,7 @@ fn any_group(tier: Tier, rng: &mut StdRng) -> Group {
         _ => Group::Outside,
     };
     match tier {
-        Tier::Matched | Tier::Real => matched(rng),
+        Tier::Matched | Tier::Real | Tier::Other => matched(rng),
         Tier::Unmatched => Group::Unmatched,
         Tier::Clutter => Group::Clutter,
         Tier::Outside => Group::Outside,
@@ -99,7 +102,7 @@ fn any_group(tier: Tier, rng: &mut StdRng) -> Group {
 
 fn drawn(group: Group, vehicle: &Vehicle, seconds: f64, rng: &mut StdRng) -> Vec<Hidden> {
     match group {
-        Group::None | Group::Drift | Group::Real => Vec::new(),
+        Group::None | Group::Drift | Group::Small | Group::Real => Vec::new(),
         Group::One => vec![Hidden::draw(catalogue::any(rng), vehicle, rng)],
         Group::Two => catalogue::pair(rng).map(|id| Hidden::draw(id, vehicle, rng)).into(),
         Group::Unmatched => vec![unmatched::any(vehicle, rng)],

@@ -94,6 +94,13 @@ impl Judged {
         self.fresh(answer).filter(|f| f.status == Status::Named && !true_of(f)).count()
     }
 
+    /// Confident names, alone or of a set, with nothing behind them.
+    pub fn spurious(&self) -> Vec<&str> {
+        let Some(answer) = self.ok() else { return Vec::new() };
+        let behind = |f: &&Finding| self.hidden.iter().any(|truth| f.members.iter().any(|member| truth.is(member)));
+        self.fresh(answer).filter(|f| !behind(f)).map(|f| f.effect.as_str()).collect()
+    }
+
     /// Whether each of what is hidden has a name of its own, and how many have one or are in a set.
     pub fn found(&self) -> [usize; 2] {
         let Some(answer) = self.ok() else { return [0, 0] };
@@ -136,7 +143,7 @@ impl Judged {
         format!("{:<10}{truth}  ->  {said}  [{verdict}]  {judgement}  {:.1} s", self.group.name(), self.seconds)
     }
 
-    fn say(finding: &Finding) -> String {
+    pub fn say(finding: &Finding) -> String {
         let status = match finding.status {
             Status::Named => "",
             Status::NamedSet => " (set)",
@@ -151,6 +158,8 @@ impl Judged {
             _ if self.answer.is_err() => "",
             (Group::None | Group::Drift, None) => "right",
             (Group::None | Group::Drift, Some(_)) => "FALSE NAME",
+            (Group::Small, _) if !self.spurious().is_empty() => "WRONG NAME",
+            (Group::Small, _) => "right",
             (Group::Outside, _) if self.unexplained() => "flagged",
             (Group::Outside, Some(_)) => "WRONG NAME",
             (Group::Outside, None) => "not flagged",

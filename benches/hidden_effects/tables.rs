@@ -32,6 +32,7 @@ fn shares(all: &[Judged]) {
     };
     share("the program failed", &|_| true, &|j| j.answer.is_err());
     share("a confident wrong name", &|_| true, &|j| j.confident_wrong() > 0);
+    share("a name with nothing behind it", &|_| true, &|j| !j.spurious().is_empty());
     let none = |j: &Judged| j.group == Group::None;
     let drift = |j: &Judged| j.group == Group::Drift;
     share("clean: a false name", &none, &|j| j.first().is_some());
@@ -54,6 +55,11 @@ fn shares(all: &[Judged]) {
     let two = |j: &Judged| j.group == Group::Two;
     share("two: both named", &two, &|j| j.found()[0] == 2);
     share("two: both named or in a named set", &two, &|j| j.found()[1] == 2);
+    let small = |j: &Judged| j.group == Group::Small;
+    share("small: a name with nothing behind it", &small, &|j| !j.spurious().is_empty());
+    let hidden = |j: &Judged| matches!(j.group, Group::One | Group::Two);
+    share("one or two: right cause first", &hidden, &Judged::first_is_right);
+    share("one or two: every cause named or in a set", &hidden, &|j| j.found()[1] == j.hidden.len());
     let outside = |j: &Judged| j.group == Group::Outside;
     share("outside: told to be unexplained", &outside, &Judged::unexplained);
     share("outside: given a name", &outside, &|j| j.first().is_some());

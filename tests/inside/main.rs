@@ -32,4 +32,5 @@ mod training;
 #[path = "../truth/mod.rs"]
 mod truth;
 mod truth_hidden;
+mod truth_other;
 mod truth_physics;

@@ -59,7 +59,7 @@ impl Hidden {
     }
 
     /// A truth that no equation of the catalogue describes.
-    fn beyond(id: &str, size: f64, right: &[&'static str], secret: &[(&'static str, f64)]) -> Self {
+    pub fn beyond(id: &str, size: f64, right: &[&'static str], secret: &[(&'static str, f64)]) -> Self {
         Hidden { id: id.into(), size, right: right.to_vec(), values: Vec::new(), secret: secret.to_vec() }
     }
 

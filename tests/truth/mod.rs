@@ -12,6 +12,7 @@ pub mod drag;
 pub mod effects;
 pub mod hidden;
 pub mod integrate;
+pub mod other;
 pub mod response;
 pub mod sense;
 pub mod state;
