@@ -65,7 +65,8 @@ fn record(
     human: &mut dyn FnMut(&Seen) -> [f64; 4],
 ) -> Log {
     let mut log = Log { name: "flight".into(), start_ns: 1_700_000_000_000_000_000, ..Log::default() };
-    log.vehicle = VehicleRecord { mass_kg: Some(nominal.mass), max_rate_rad_s: Some(airframe.max_rate) };
+    let (mass_kg, max_rate_rad_s) = (Some(nominal.mass), Some(airframe.max_rate));
+    log.vehicle = VehicleRecord { mass_kg, max_rate_rad_s, ..VehicleRecord::default() };
     let faults = Faults::new(hidden, setting.seed, setting.seconds);
     let mut plant = Plant::on_ground(airframe);
     let mut recorder = Recorder::new(setting);

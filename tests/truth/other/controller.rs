@@ -15,6 +15,8 @@ const DERIVATIVE_HZ: f64 = 90.0;
 const INTEGRAL: f64 = 4.0;
 const RELAXED: f64 = 0.3;
 const WOUND: f64 = 0.3;
+/// Most that the controller asks for of a turn about each axis, thrust share.
+const MOST: [f64; 3] = [0.5, 0.5, 0.2];
 
 /// Roll, pitch, yaw that more of each motor turns toward: front left, front right, rear left, rear right.
 pub const MIX: [[f64; 3]; 4] = [[1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, -1.0]];
@@ -73,7 +75,8 @@ impl Controller {
             let gain = airframe.bandwidth[k] / airframe.authority[k];
             let relax = 1.0 / (1.0 + (error[k] / RELAXED).powi(2));
             self.wound[k] = (self.wound[k] + gain * INTEGRAL * error[k] * relax * LOOP_S).clamp(-WOUND, WOUND);
-            out[k] = gain * (error[k] - airframe.motor_s * self.derivative[k]) + self.wound[k];
+            let asked = gain * (error[k] - airframe.motor_s * self.derivative[k]) + self.wound[k];
+            out[k] = asked.clamp(-MOST[k], MOST[k]);
         }
         mix(airframe, self.opened(faults), &out)
     }
