@@ -7,6 +7,7 @@ pub mod encode;
 pub mod error;
 pub mod fsio;
 pub mod lane;
+pub mod memory;
 pub mod peak;
 pub mod rng;
 pub mod stats;

@@ -97,6 +97,7 @@ impl CommandEnd {
 
 /// Runs the command that this process was started with.
 pub fn main() -> ExitCode {
+    interrupt::install();
     // Usage errors end here, with clap's own message and exit code 2.
     let result = match Cli::parse().command {
         Command::Train(args) => train::run(&args),

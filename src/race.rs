@@ -1,6 +1,7 @@
 //! Gates, observation, reward, ends and beginnings of episodes; scoring and keeping what learned to race.
 
 pub mod act;
+pub mod checkpoint;
 pub mod config;
 pub mod env;
 pub mod eval;

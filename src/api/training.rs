@@ -8,8 +8,9 @@ use crate::learn::ppo::train::{Flow, Iteration, Observer};
 use crate::present::run::Run;
 use crate::present::run::evaluated;
 use crate::present::run::metrics::LogRow;
-use crate::present::train::{Ended, TrainingWatch, evaluate, make};
+use crate::present::train::{Ended, TrainingWatch, evaluate, make, room, told};
 use crate::race::config::Setup;
+use crate::race::env::Race;
 use crate::race::env::tally::Tally;
 use crate::race::eval::Report;
 use crate::race::train;
@@ -66,7 +67,7 @@ impl Trained {
     /// complete a lap from the pad, of equals the fastest. Policies from a time when penalties were not yet whole do
     /// not count.
     pub fn best(&self) -> Result<(Policy, Report)> {
-        let policies: Vec<_> = self.policies.iter().map(|policy| policy.0.clone()).collect();
+        let policies: Vec<_> = self.policies.iter().map(|policy| (policy.0.clone(), policy.0.about.seconds)).collect();
         let flown = threads::on(None, || evaluate(Level::best(), &self.setup, &policies, &mut || false))?;
         let all: Vec<_> = flown.unwrap_or_default().into_iter().map(|(evaluated, _)| evaluated).collect();
         let best = evaluated::best(&all).map(|best| &best.snapshot);
@@ -89,7 +90,7 @@ impl<F: FnMut(&Progress) -> Flow> Closure<F> {
     }
 }
 
-impl<F: FnMut(&Progress) -> Flow> Observer<Tally> for Closure<F> {
+impl<F: FnMut(&Progress) -> Flow> Observer<Race> for Closure<F> {
     fn iteration(&mut self, iteration: &Iteration<Tally>) -> Flow {
         let row = LogRow::new(iteration, iteration.seconds - self.last_s);
         self.last_s = iteration.seconds;
@@ -110,8 +111,12 @@ impl<F: FnMut(&Progress) -> Flow + Send> TrainingWatch for Closure<F> {
 /// Trains a policy as `setup` says, on all processors. `observer` is called after every update and says whether to go
 /// on. The same set-up with a budget of steps gives the same policies bit for bit, on any number of threads.
 pub fn train(setup: &Setup, observer: impl FnMut(&Progress) -> Flow + Send) -> Result<Trained> {
-    let trained = threads::on(None, || train::train(Level::best(), setup, &mut Closure::new(observer)))?;
-    let train::TrainedPolicies { policies, steps, seconds, stopped } = trained;
+    room::check(setup)?;
+    let trained = threads::on(None, || train::train(Level::best(), setup, None, &mut Closure::new(observer)))?;
+    let train::TrainedPolicies { policies, steps, seconds, stopped, diverged } = trained;
+    if let Some(setback) = diverged {
+        return Err(Error::Failed(format!("the training diverges: {}", told(&setback))));
+    }
     let policies = policies.into_iter().map(Policy).collect();
     Ok(Trained { policies, steps, seconds, stopped, setup: setup.clone() })
 }
@@ -124,6 +129,7 @@ pub fn train_into(
     setup: &Setup,
     observer: impl FnMut(&Progress) -> Flow + Send,
 ) -> Result<(Policy, Report)> {
+    room::check(setup)?;
     let run = Run::create(Some(out.as_ref()), &setup.track.name)?;
     match make(&run, setup, threads::processors(), "racer::train_into", &mut Closure::new(observer))? {
         Ended::Finished(finished) => Ok((Policy(finished.policy), finished.evaluated.report)),

@@ -108,8 +108,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         config.agents = args.agents.map_or(sensitivity::AGENTS, |agents| agents as usize);
         return sensitive(args, &found, other.as_ref(), &network, &about, &config);
     }
-    let default = || default_file(&found, other.as_ref(), args.start, config.agents);
-    let file = Reserved::new(&args.out.clone().unwrap_or_else(default))?;
+    let file = reserve(args, || default_file(&found, other.as_ref(), args.start, config.agents))?;
 
     let vehicle = other.as_ref().unwrap_or(&about.vehicle);
     let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
@@ -155,8 +154,7 @@ fn sensitive(
 ) -> anyhow::Result<CommandEnd> {
     let vehicle = other.unwrap_or(&about.vehicle);
     let race = Race::new(&about.env, &about.track, vehicle, about.seed).seen_as(&about.vehicle);
-    let default = || beside(found, &format!("sensitivity-{}{}.json", named(other), config.agents));
-    let out = Reserved::new(&args.out.clone().unwrap_or_else(default))?;
+    let out = reserve(args, || beside(found, &format!("sensitivity-{}{}.json", named(other), config.agents)))?;
     let flown = sensitivity::Case { race: &race, track: &about.track, network, config };
     let snapshot = found.snapshot.display().to_string();
     sensitivity::run(&snapshot, &flown, args.threads, args.json, out)
@@ -171,7 +169,12 @@ fn judge(require: Option<f64>, report: &Report) -> CommandEnd {
     CommandEnd::NotMet
 }
 
-/// A name that says what was measured, and that is still free.
+/// The file that was asked for, or `default`, numbered where others have that name: several evaluations may run at once.
+fn reserve(args: &Args, default: impl Fn() -> PathBuf) -> Result<Reserved, BadInput> {
+    args.out.as_deref().map_or_else(|| Reserved::numbered(&default()), Reserved::new)
+}
+
+/// A name that says what was measured.
 fn default_file(found: &FoundPolicy, other: Option<&Vehicle>, start: Starts, agents: usize) -> PathBuf {
     let start = format!("{start:?}").to_lowercase();
     beside(found, &format!("evaluation-{}{start}-{agents}.json", named(other)))
@@ -182,12 +185,12 @@ fn named(other: Option<&Vehicle>) -> String {
     other.map_or(String::new(), |other| format!("{}-", run::plain(&other.name)))
 }
 
-/// A free file of this name beside the policy, which a snapshot's name leads.
+/// A file of this name beside the policy, which a snapshot's name leads.
 fn beside(found: &FoundPolicy, name: &str) -> PathBuf {
     let name = match &found.run {
         Some(_) => name.into(),
         None => format!("{}-{name}", found.snapshot.file_stem().unwrap_or_default().to_string_lossy()),
     };
     let folder = found.run.as_deref().or(found.snapshot.parent()).unwrap_or(Path::new(""));
-    run::free(&folder.join(name))
+    folder.join(name)
 }

@@ -1,23 +1,36 @@
 //! Ctrl-C: the first asks to come to an end, the second ends.
 
+use crate::base::fsio;
 use std::io::Read;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static ASKED: AtomicBool = AtomicBool::new(false);
+/// What the first Ctrl-C is answered with; none where it ends the process.
+static REMARK: Mutex<Option<&'static str>> = Mutex::new(None);
+
+/// From now on Ctrl-C, SIGTERM and SIGHUP leave no temporary file behind. Where the system does not allow that, they
+/// end the process as ever.
+pub fn install() {
+    let _ = ctrlc::set_handler(|| {
+        let remark = REMARK.lock().ok().and_then(|remark| *remark);
+        match remark {
+            Some(remark) if !ASKED.swap(true, Ordering::Relaxed) => super::tell(&format!("\n{remark}")),
+            _ => end(),
+        }
+    });
+}
 
 /// From now on the first Ctrl-C (or SIGTERM) is answered with `remark` and remembered, and the second ends the process.
-pub fn watch(remark: &'static str) -> Result<(), ctrlc::Error> {
-    let watching = ctrlc::set_handler(move || {
-        if ASKED.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-        super::tell(&format!("\n{remark}"));
-    });
-    match watching {
-        // A command that trains twice is watched since the first time.
-        Err(ctrlc::Error::MultipleHandlers) => Ok(()),
-        other => other,
+pub fn watch(remark: &'static str) {
+    if let Ok(mut now) = REMARK.lock() {
+        *now = Some(remark);
     }
+}
+
+fn end() -> ! {
+    fsio::remove_temporaries();
+    std::process::exit(130)
 }
 
 /// From now on this process ends where its standard input does. A pipe from the process that started it ends with that
@@ -26,7 +39,7 @@ pub fn end_with_standard_input() {
     std::thread::spawn(|| {
         let mut buffer = [0; 64];
         while std::io::stdin().read(&mut buffer).is_ok_and(|read| read > 0) {}
-        std::process::exit(130);
+        end();
     });
 }
 

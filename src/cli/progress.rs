@@ -34,6 +34,14 @@ impl TrainingBar {
         Self { bar, next_line_s: 0.0 }
     }
 
+    /// Says something beside it.
+    pub fn say(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(text),
+            None => super::tell(text),
+        }
+    }
+
     pub fn show(&mut self, status: &TrainingStatus) {
         match &self.bar {
             Some(bar) => {

@@ -2,6 +2,7 @@
 
 use super::{CommandEnd, tell};
 use crate::base::check::BadInput;
+use crate::base::error::Error;
 use crate::base::fsio;
 use crate::base::lane::Level;
 use crate::flight::{self, Readable};
@@ -75,7 +76,8 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         (MCAP, replay::mcap::mcap(&shown)?),
         (LAYOUT, format!("{layout}\n").into_bytes()),
     ] {
-        fsio::write_new(&folder.join(name), &bytes)?;
+        let path = folder.join(name);
+        fsio::write_new(&path, &bytes).map_err(Error::write(&path))?;
     }
     super::print(&summary(&shown))?;
     tell(&format!("{PAGE}, {MCAP} and {LAYOUT} in {}", folder.display()));

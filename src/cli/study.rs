@@ -92,7 +92,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let ended = if args.table {
         WorkEnd::default()
     } else {
-        interrupt::watch("Ending the runs under way; Ctrl-C again ends at once.")?;
+        interrupt::watch("Ending the runs under way; Ctrl-C again ends at once.");
         work::work(&Work { planned: &planned, folder: &folder, shard, jobs, threads })?
     };
 

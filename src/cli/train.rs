@@ -5,9 +5,9 @@ use super::values::threads;
 use super::{CommandEnd, interrupt, tell};
 use crate::base::check::BadInput;
 use crate::present::run::Run;
-use crate::present::train::{Ended, make};
+use crate::present::train::{Ended, make, resume, room};
 use crate::race::config::{DEFAULT, Setting, Setup};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Train a policy, evaluate every snapshot of it and keep the best
 #[derive(Debug, clap::Args)]
@@ -40,18 +40,23 @@ pub struct Args {
     /// New folder for the run [default: one below runs/, named by time and track]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Go on with a training that was stopped or killed, from its last checkpoint, as if it had never stopped
+    #[arg(long, value_name = "RUN", conflicts_with_all = ["config", "track", "vehicle", "set", "seed", "minutes", "steps", "out"])]
+    resume: Option<PathBuf>,
     /// End at once, without saving, when standard input ends: how a study takes its trainings along
     #[arg(long, hide = true)]
     attached: bool,
 }
 
 const HELP: &str =
-    "A file needs only the keys that differ from the built-in a2rl.toml. Ctrl-C finishes the update and saves.
+    "A file needs only the keys that differ from the built-in a2rl.toml. Ctrl-C finishes the update and saves. A run \
+is written as it is trained: TensorBoard, `racer eval RUN` and `racer report RUN` work on what there is.
 
 Examples:
   racer train
   racer train --track uzh_split_s --minutes 2 --set ppo.learning_rate=3e-4
-  racer train --config runs/RUN/config.toml --seed 2";
+  racer train --config runs/RUN/config.toml --seed 2
+  racer train --resume runs/RUN";
 
 /// The help with all keys of the configuration.
 fn long_help() -> String {
@@ -73,9 +78,13 @@ impl Args {
 
 /// Trains, saves, evaluates.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
+    if let Some(folder) = &args.resume {
+        return go_on(args, folder);
+    }
     let setup = Setup::load(&args.config, &args.settings()?)?;
+    room::check(&setup)?;
     let run = Run::create(args.out.as_deref(), &setup.track.name)?;
-    let mut shown = ShownTraining::new()?;
+    let mut shown = ShownTraining::new();
     if args.attached {
         interrupt::end_with_standard_input();
     }
@@ -84,6 +93,25 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         Ended::Finished(_) => Ok(CommandEnd::Done),
         Ended::Stopped { steps } => {
             stopped(&run, steps);
+            Ok(CommandEnd::Interrupted)
+        }
+    }
+}
+
+/// Goes on with the training in `folder`.
+fn go_on(args: &Args, folder: &Path) -> anyhow::Result<CommandEnd> {
+    let mut shown = ShownTraining::new();
+    if args.attached {
+        interrupt::end_with_standard_input();
+    }
+    match resume(folder, threads(args.threads), &mut shown)? {
+        None => {
+            tell(&format!("{0} is finished: nothing is left to train.\n  racer eval {0}", folder.display()));
+            Ok(CommandEnd::Done)
+        }
+        Some(Ended::Finished(_)) => Ok(CommandEnd::Done),
+        Some(Ended::Stopped { steps }) => {
+            stopped(&Run { folder: folder.into() }, steps);
             Ok(CommandEnd::Interrupted)
         }
     }
@@ -99,8 +127,8 @@ fn stopped(run: &Run, steps: u64) {
     let folder = run.folder.display();
     tell(&format!(
         "Stopped after {:.1} M steps; everything so far is in {folder}.\n  \
-         racer eval {folder}                        evaluates the last policy\n  \
-         racer train --config {folder}/config.toml  trains again, to the end",
+         racer eval {folder}            evaluates the last policy\n  \
+         racer train --resume {folder}  goes on to the end",
         steps as f64 / 1e6
     ));
 }

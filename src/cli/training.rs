@@ -22,10 +22,9 @@ pub struct ShownTraining {
 
 impl ShownTraining {
     /// From now on Ctrl-C ends a training after the update under way.
-    pub fn new() -> Result<Self> {
-        interrupt::watch("Finishing this update and saving; Ctrl-C again ends at once, without saving.")
-            .map_err(|error| Error::Failed(format!("Ctrl-C cannot be watched: {error}")))?;
-        Ok(Self::default())
+    pub fn new() -> Self {
+        interrupt::watch("Finishing this update and saving; Ctrl-C again ends at once, without saving.");
+        Self::default()
     }
 }
 
@@ -43,6 +42,13 @@ impl TrainingWatch for ShownTraining {
         let &Iteration { share, seconds, steps, .. } = iteration;
         if let Some(progress) = &mut self.progress {
             progress.show(&TrainingStatus { share, seconds, steps, episode_return, gates });
+        }
+    }
+
+    fn remark(&mut self, text: &str) {
+        match &self.progress {
+            Some(progress) => progress.say(text),
+            None => tell(text),
         }
     }
 

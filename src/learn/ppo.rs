@@ -9,6 +9,8 @@ pub mod config;
 pub mod gae;
 pub mod loss;
 pub mod rollout;
+pub mod squash;
+pub mod state;
 pub mod train;
 pub mod update;
 

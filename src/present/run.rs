@@ -5,20 +5,26 @@
 //! | `command.txt` | the command line |
 //! | `config.toml`, `track.toml`, `vehicle.toml` | what it resolved to; `--config RUN/config.toml` repeats it |
 //! | `provenance.json` | version, machine, SIMD level, threads, time |
-//! | `metrics.csv`, `tensorboard/` | one row an iteration |
-//! | `snapshots/` | policies on the way, named by environment steps |
+//! | `metrics.csv`, `tensorboard/` | one row an iteration, written as it comes |
+//! | `snapshots/` | policies on the way, named by environment steps, each written when it is taken |
+//! | `checkpoints/` | what `racer train --resume RUN` goes on from; gone from a finished run |
+//! | `diverged.json` | numbers that were not finite, and what was done about them; seldom there |
 //! | `snapshots.json` | how each did in evaluation |
 //! | `policy.safetensors`, `evaluation.json` | the best of them, and how it did |
 //! | `lap.csv`, `lap.svg` | a flight of the nominal vehicle with it: step by step, and from above |
 //! | `training.svg` | learning curves |
 
+pub mod checkpoints;
 pub mod evaluated;
 mod find;
+pub mod health;
+pub mod live;
 pub mod metrics;
 pub mod provenance;
 pub mod resolved;
 pub mod tensorboard;
 
+pub use crate::base::fsio::free;
 pub use find::{FoundPolicy, find};
 
 use crate::base::check::BadInput;
@@ -63,20 +69,13 @@ impl Run {
         fsio::write_new(&path, bytes.as_ref()).map_err(Error::write(&path))?;
         Ok(path)
     }
-}
 
-/// `path`, or the first of `path-2`, `path-3` ... that does not exist.
-pub fn free(path: &Path) -> PathBuf {
-    let numbered = |number: usize| {
-        let mut name = path.file_stem().unwrap_or_default().to_os_string();
-        name.push(format!("-{number}"));
-        if let Some(extension) = path.extension() {
-            name.push(".");
-            name.push(extension);
-        }
-        path.with_file_name(name)
-    };
-    std::iter::once(path.to_path_buf()).chain((2..).map(numbered)).find(|path| !path.exists()).unwrap_or_default()
+    /// Writes a file of the run, in place of one that an earlier attempt at it has left.
+    pub fn replace(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<PathBuf> {
+        let path = self.folder.join(name);
+        fsio::replace(&path, bytes.as_ref()).map_err(Error::write(&path))?;
+        Ok(path)
+    }
 }
 
 /// UTC in letters that suit a file name and sort by time, such as `20261121T013000Z`.

@@ -97,6 +97,15 @@ impl Snapshot {
         self.content()?.to_bytes()
     }
 
+    /// [`Snapshot::to_bytes`], which are known to be read again: a network of numbers that are not finite has no file.
+    pub fn checked_bytes(&self) -> Result<Vec<u8>, Error> {
+        let bytes = self.to_bytes()?;
+        match Self::from_bytes(&bytes) {
+            Ok(_) => Ok(bytes),
+            Err(Invalid { key, found, .. }) => Err(Error::encode("the policy")(format!("{key}: {found}"))),
+        }
+    }
+
     /// Reads a file, and makes sure that the network still answers as it did when it was written.
     pub fn read(path: &Path) -> Result<Self, BadInput> {
         let refuse = |found: String, advice: &str| {

@@ -1,10 +1,11 @@
 //! A training of a policy: in its race, under its budget, with what it was trained on kept beside each policy.
 
 use crate::base::lane::Level;
-use crate::learn::ppo::train::{Observer, train as learn};
+use crate::learn::ppo::state::Setback;
+use crate::learn::ppo::train::{NetworkSnapshot, Observer, train as learn};
+use crate::race::checkpoint::RaceState;
 use crate::race::config::Setup;
 use crate::race::env::Race;
-use crate::race::env::tally::Tally;
 use crate::race::snapshot::{About, Snapshot};
 
 /// What a training leaves.
@@ -17,24 +18,46 @@ pub struct TrainedPolicies {
     pub seconds: f64,
     /// Whether the observer ended it before the budget did.
     pub stopped: bool,
+    /// What ended it before either, in spite of setbacks.
+    pub diverged: Option<Setback>,
 }
 
-/// Trains on the current rayon pool. The same set-up with a budget of steps gives the same policies on any number of
-/// threads.
-pub fn train(level: Level, setup: &Setup, observer: &mut dyn Observer<Tally>) -> TrainedPolicies {
+/// The race that `setup` trains in.
+pub fn race(setup: &Setup) -> Race {
+    Race::new(&setup.config.env, &setup.track, &setup.vehicle, setup.config.seed)
+}
+
+/// The policy that was taken of a training as `setup` says. Under a budget of steps it does not say how long it took:
+/// the same training then gives the same file.
+pub fn policy_of(setup: &Setup, taken: &NetworkSnapshot) -> Snapshot {
     let Setup { config, track, vehicle } = setup;
-    let race = Race::new(&config.env, track, vehicle, config.seed);
-    let trained = learn(level, &race, &config.ppo, &config.budget, config.seed, observer);
-    let about = |steps, seconds| About {
+    let about = About {
         track: track.clone(),
         vehicle: vehicle.clone(),
         env: config.env.clone(),
         eval: config.eval.clone(),
         seed: config.seed,
-        steps,
-        seconds,
+        steps: taken.steps,
+        seconds: if config.budget.steps.is_some() { 0.0 } else { taken.seconds },
     };
-    let policies = trained.snapshots.into_iter();
-    let policies = policies.map(|s| Snapshot { network: s.network, about: about(s.steps, s.seconds) }).collect();
-    TrainedPolicies { policies, steps: trained.steps, seconds: trained.seconds, stopped: trained.stopped }
+    Snapshot { network: taken.network.clone(), about }
+}
+
+/// Trains on the current rayon pool, from the beginning or from `state`. The same set-up with a budget of steps gives
+/// the same policies on any number of threads, whether it went on from a state or not.
+pub fn train(
+    level: Level,
+    setup: &Setup,
+    state: Option<&RaceState>,
+    observer: &mut dyn Observer<Race>,
+) -> TrainedPolicies {
+    let config = &setup.config;
+    let trained = learn(level, &race(setup), &config.ppo, &config.budget, config.seed, state, observer);
+    TrainedPolicies {
+        policies: trained.snapshots.iter().map(|taken| policy_of(setup, taken)).collect(),
+        steps: trained.steps,
+        seconds: trained.seconds,
+        stopped: trained.stopped,
+        diverged: trained.diverged,
+    }
 }

@@ -49,6 +49,7 @@ fn hyper(golden: &Value) -> Hyper {
         weights: Weights {
             clip: get("clip"),
             entropy: get("entropy_coefficient"),
+            squashed: false,
             magnitude: get("magnitude_coefficient"),
             value: get("value_coefficient"),
         },

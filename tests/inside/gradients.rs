@@ -75,7 +75,7 @@ fn check(name: &str, weights: Weights) {
     }
 }
 
-const NONE: Weights = Weights { clip: 0.2, entropy: 0.0, magnitude: 0.0, value: 0.0 };
+const NONE: Weights = Weights { clip: 0.2, entropy: 0.0, squashed: false, magnitude: 0.0, value: 0.0 };
 
 #[test]
 fn surrogate() {
@@ -90,10 +90,11 @@ fn value() {
 #[test]
 fn entropy_and_magnitude() {
     check("entropy", Weights { entropy: 0.3, ..NONE });
+    check("entropy of the action", Weights { entropy: 0.3, squashed: true, ..NONE });
     check("magnitude", Weights { magnitude: 0.9, ..NONE });
 }
 
 #[test]
 fn all_terms() {
-    check("all", Weights { clip: 0.3, entropy: 0.01, magnitude: 0.15, value: 0.5 });
+    check("all", Weights { clip: 0.3, entropy: 0.01, squashed: true, magnitude: 0.15, value: 0.5 });
 }

@@ -13,7 +13,7 @@ struct Log {
     stop_after: usize,
 }
 
-impl Observer<Tally> for Log {
+impl Observer<Race> for Log {
     fn iteration(&mut self, iteration: &Iteration<Tally>) -> Flow {
         self.gates_per_episode.push(iteration.tally.episode_gates / iteration.tally.episodes().max(1.0));
         if iteration.index == self.stop_after { Flow::Stop } else { Flow::Continue }
@@ -26,7 +26,7 @@ fn run(threads: usize, level: Level, settings: &[&str], log: &mut Log) -> Traine
     let (track, vehicle) = (config.load_track().unwrap(), config.load_vehicle().unwrap());
     let race = Race::new(&config.env, &track, &vehicle, config.seed);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| train(level, &race, &config.ppo, &config.budget, config.seed, log))
+    pool.install(|| train(level, &race, &config.ppo, &config.budget, config.seed, None, log))
 }
 
 fn bits(trained: &TrainedNetworks) -> Vec<u32> {

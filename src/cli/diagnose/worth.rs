@@ -27,7 +27,7 @@ pub fn present(policy: &str, base: &Vehicle, extended: &Vehicle) -> Result<Strin
 /// The table of two policies, one trained in each vehicle for `minutes` in the folder `to`, flown in the extended one.
 pub fn retrained(to: &Path, minutes: f64, base: &Vehicle, extended: &Vehicle) -> Result<String> {
     let vehicles = [("base", base), ("extended", extended)];
-    let flown = retrain(to, minutes, vehicles, processors(), &mut ShownTraining::new()?)?;
+    let flown = retrain(to, minutes, vehicles, processors(), &mut ShownTraining::new())?;
     let line = |(name, result)| (format!("trained in the {name} vehicle"), "extended", result);
     Ok(table(&flown.into_iter().map(line).collect::<Vec<_>>()))
 }

@@ -67,6 +67,11 @@ pub struct PpoConfig {
     pub clip: f64,
     /// Reward for a wide action distribution. Higher explores longer.
     pub entropy: f64,
+    /// Whether the distribution that is to be wide is that of the action, whose widest is the even one; else that of
+    /// the Gaussian before its tanh, which widens for ever and saturates the commands of long trainings.
+    pub entropy_squashed: bool,
+    /// Share of `entropy` at the end of the budget; falls linearly.
+    pub entropy_end: f64,
     /// Weight of the critic's squared error.
     pub value_coefficient: f64,
     /// Gradients of a minibatch with a larger norm are scaled down to it.
@@ -89,6 +94,11 @@ impl PpoConfig {
     pub fn penalty(&self, share: f64) -> f64 {
         let done = if self.penalty_full > 0.0 { (share / self.penalty_full).clamp(0.0, 1.0) } else { 1.0 };
         self.penalty_begin.powf(1.0 - done)
+    }
+
+    /// Weight of the entropy at `share` of the budget.
+    pub fn entropy_at(&self, share: f64) -> f64 {
+        self.entropy * (1.0 + (self.entropy_end - 1.0) * share.clamp(0.0, 1.0))
     }
 
     /// Environment steps of one rollout.
@@ -149,7 +159,12 @@ impl Check for PpoConfig {
         }
         let begins = self.penalty_begin > 0.0 && self.penalty_begin <= 1.0;
         Invalid::unless(begins, "penalty_begin", self.penalty_begin, "above 0, at most 1", "1 is no growth")?;
-        for (key, value) in [("gamma", self.gamma), ("lambda", self.lambda), ("penalty_full", self.penalty_full)] {
+        for (key, value) in [
+            ("gamma", self.gamma),
+            ("lambda", self.lambda),
+            ("penalty_full", self.penalty_full),
+            ("entropy_end", self.entropy_end),
+        ] {
             Invalid::unless((0.0..=1.0).contains(&value), key, value, "0 to 1", "")?;
         }
         let wide = (-5.0..=2.0).contains(&self.log_std_initial);

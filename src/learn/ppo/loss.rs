@@ -2,6 +2,7 @@
 //!
 //! total = surrogate - entropy_coefficient entropy + magnitude_coefficient E|tanh(mean)|^2 + value_coefficient value
 
+use super::squash::{Squash, squash};
 use crate::base::lane::{Lane, build, each, sum_of_squares};
 use crate::learn::policy::{ACTIONS, log_prob_of};
 
@@ -11,6 +12,8 @@ pub struct Weights {
     /// Ratios leave no gradient beyond 1 +- clip.
     pub clip: f64,
     pub entropy: f64,
+    /// Whether the entropy is that of the action, after its tanh, or of the Gaussian before it.
+    pub squashed: bool,
     /// lambda_a of Eq. 12.
     pub magnitude: f64,
     pub value: f64,
@@ -30,16 +33,17 @@ pub struct Samples<L> {
 
 /// Sums over lanes are left to the caller: everything here is per lane.
 pub struct Answer<L> {
-    /// Derivatives of the total by mean, log_std (without the entropy's, which is constant) and value.
+    /// Derivatives of the total by mean, log_std (without that of the Gaussian's entropy, which is
+    /// constant) and value.
     pub d_mean: [L; ACTIONS],
     pub d_log_std: [L; ACTIONS],
     pub d_value: L,
     /// The terms of [`TERMS`].
-    pub terms: [L; 5],
+    pub terms: [L; 6],
 }
 
 /// Per-sample terms, in the order of [`Answer::terms`]; half squared errors for `value`.
-pub const TERMS: [&str; 5] = ["surrogate", "value", "magnitude", "approx_kl", "clip_fraction"];
+pub const TERMS: [&str; 6] = ["surrogate", "value", "magnitude", "approx_kl", "clip_fraction", "squash"];
 
 /// Loss and derivatives; `share` is 1 over the minibatch's samples and scales the derivatives.
 #[inline(always)]
@@ -58,12 +62,13 @@ pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
     let magnitude = sum_of_squares(squashed);
     let pull = share * L::of(2.0 * w.magnitude);
     let error = s.value - s.ret;
+    let (squash, cost) = (squashes(w, s), share * L::of(-w.entropy));
     Answer {
         d_mean: build!(|k| {
             let slope = (-squashed[k]).mul_add(squashed[k], one);
-            (d_log_prob * noise[k]).mul_add(inverse[k], squashed[k] * slope * pull)
+            (d_log_prob * noise[k]).mul_add(inverse[k], (squashed[k] * slope).mul_add(pull, cost * squash[k].d_mean))
         }),
-        d_log_std: build!(|k| d_log_prob * noise[k].mul_add(noise[k], -one)),
+        d_log_std: build!(|k| d_log_prob.mul_add(noise[k].mul_add(noise[k], -one), cost * squash[k].d_log_std)),
         d_value: error * share * L::of(w.value),
         terms: [
             -free.min(clipped),
@@ -71,6 +76,18 @@ pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
             magnitude,
             (ratio - one) - log_ratio,
             L::select(L::of(w.clip).lt((ratio - one).abs()), one, L::zero()),
+            (squash[0].value + squash[1].value) + (squash[2].value + squash[3].value),
         ],
+    }
+}
+
+/// What the tanh adds to the entropy, command by command; nothing where the entropy is the Gaussian's.
+#[inline(always)]
+fn squashes<L: Lane>(w: &Weights, s: &Samples<L>) -> [Squash<L>; ACTIONS] {
+    if w.squashed {
+        build!(|k| squash(s.mean[k], s.log_std[k].exp()))
+    } else {
+        let zero = L::zero();
+        [Squash { value: zero, d_mean: zero, d_log_std: zero }; ACTIONS]
     }
 }

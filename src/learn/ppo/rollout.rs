@@ -141,6 +141,17 @@ impl<E: Environment> Tile<E> {
         let saved = std::array::from_fn(|b| environment.start(first + (b * LANES) as u32));
         Tile { first, saved, tally: E::Tally::default() }
     }
+
+    /// Its environments.
+    pub fn saved(&self) -> &[E::Saved] {
+        &self.saved
+    }
+
+    /// Goes on with the environments of the same tile.
+    pub fn resume(&mut self, saved: &[E::Saved; TILE_BLOCKS]) {
+        self.saved = saved.clone();
+        self.tally = E::Tally::default();
+    }
 }
 
 /// Flies `steps` steps in every tile under the stochastic policy, on the current rayon pool. `first_step` is the number

@@ -148,8 +148,8 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Updater<E> {
             let terms = chunk.get_mut().expect(POISONED).terms;
             sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term * share);
         }
-        let [surrogate, value, magnitude, approx_kl, clip_fraction] = sums;
-        let entropy = policy::entropy(network.log_std().map(Into::into));
+        let [surrogate, value, magnitude, approx_kl, clip_fraction, squash] = sums;
+        let entropy = policy::entropy(network.log_std().map(Into::into)) + squash;
         let total = surrogate - weights.entropy * entropy + weights.magnitude * magnitude + weights.value * value;
         Losses { total, surrogate, value, entropy, magnitude, approx_kl, clip_fraction, gradient_norm: norm }
     }

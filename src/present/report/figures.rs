@@ -17,8 +17,8 @@ pub const TRAINING: &str = "training.svg";
 
 /// Writes `lap.csv` and `lap.svg`.
 pub fn write_lap(run: &Run, track: &Track, trace: &[TraceStep], report: &Report) -> Result<()> {
-    run.write(TRACE, encode::csv("the flown lap", |csv| trace.iter().try_for_each(|moment| csv.serialize(moment)))?)?;
-    run.write(LAP, lap::svg(track, trace, &lap_title(track, report))?)?;
+    run.replace(TRACE, encode::csv("the flown lap", |csv| trace.iter().try_for_each(|moment| csv.serialize(moment)))?)?;
+    run.replace(LAP, lap::svg(track, trace, &lap_title(track, report))?)?;
     Ok(())
 }
 

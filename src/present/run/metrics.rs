@@ -53,6 +53,8 @@ impl LogRow {
             ("ppo/gradient_norm", losses.gradient_norm),
             // Rises towards 1 while the critic keeps up.
             ("ppo/explained_variance", iteration.explained_variance),
+            // Of the advantages before they are normalised, in reward.
+            ("ppo/advantage_std", iteration.advantage_std),
             // Should fall slowly; near 0 exploration has ended.
             ("ppo/action_std", iteration.std),
         ]
@@ -72,11 +74,11 @@ impl LogRow {
     }
 }
 
-/// All rows as CSV, with a header; cells without a number are empty.
-pub fn to_csv(rows: &[LogRow]) -> Result<Vec<u8>> {
+/// Rows as CSV, with a header where one is asked for; cells without a number are empty.
+pub fn to_csv(rows: &[LogRow], header: bool) -> Result<Vec<u8>> {
     let cell = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
     encode::csv("the log of the training", |csv| {
-        if let Some(first) = rows.first() {
+        if let (Some(first), true) = (rows.first(), header) {
             let names = first.values.iter().map(|(name, _)| name.clone());
             csv.write_record(["steps".to_string()].into_iter().chain(names))?;
         }
@@ -113,7 +115,7 @@ mod tests {
         let values = vec![("a/b".to_string(), 1.5), ("c".to_string(), f64::NAN)];
         let row = LogRow { wall: SystemTime::UNIX_EPOCH, steps: 64, values };
         let file = tempfile::NamedTempFile::new().unwrap();
-        std::fs::write(file.path(), to_csv(&[row]).unwrap()).unwrap();
+        std::fs::write(file.path(), to_csv(&[row], true).unwrap()).unwrap();
         assert_eq!(read(file.path(), ["c", "steps", "a/b"]).unwrap(), [[None, Some(64.0), Some(1.5)]]);
         assert!(read(file.path(), ["d"]).unwrap_err().to_string().contains("`d`"));
     }
@@ -122,8 +124,11 @@ mod tests {
     fn nothing_to_average_over_is_an_empty_cell() {
         let values = vec![("a/b".to_string(), 1.5), ("c".to_string(), f64::NAN)];
         let row = LogRow { wall: SystemTime::UNIX_EPOCH, steps: 64, values };
-        assert_eq!(String::from_utf8(to_csv(std::slice::from_ref(&row)).unwrap()).unwrap(), "steps,a/b,c\n64,1.5,\n");
+        assert_eq!(
+            String::from_utf8(to_csv(std::slice::from_ref(&row), true).unwrap()).unwrap(),
+            "steps,a/b,c\n64,1.5,\n"
+        );
         assert_eq!((row.get("a/b"), row.get("c"), row.get("d")), (Some(1.5), None, None));
-        assert!(to_csv(&[]).unwrap().is_empty());
+        assert!(to_csv(&[], true).unwrap().is_empty());
     }
 }

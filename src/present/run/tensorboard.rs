@@ -11,25 +11,25 @@ pub fn file_name(started: SystemTime) -> String {
     format!("events.out.tfevents.{:.0}.racer", seconds(started))
 }
 
-/// The whole file: a version record and one event a row. Values that are not finite are left out.
-pub fn events(started: SystemTime, rows: &[LogRow]) -> Vec<u8> {
-    let mut file = Vec::new();
+/// What a file begins with.
+pub fn version(started: SystemTime) -> Vec<u8> {
     let mut version = double(1, seconds(started));
     version.extend(bytes(3, b"brain.Event:2"));
-    record(&mut file, &version);
-    for row in rows {
-        let mut summary = Vec::new();
-        for (tag, value) in row.values.iter().filter(|(_, value)| value.is_finite()) {
-            let mut entry = bytes(1, tag.as_bytes());
-            entry.extend(float(2, *value as f32));
-            summary.extend(bytes(1, &entry));
-        }
-        let mut event = double(1, seconds(row.wall));
-        event.extend(integer(2, row.steps));
-        event.extend(bytes(5, &summary));
-        record(&mut file, &event);
+    record(&version)
+}
+
+/// A row as an event. Values that are not finite are left out.
+pub fn event(row: &LogRow) -> Vec<u8> {
+    let mut summary = Vec::new();
+    for (tag, value) in row.values.iter().filter(|(_, value)| value.is_finite()) {
+        let mut entry = bytes(1, tag.as_bytes());
+        entry.extend(float(2, *value as f32));
+        summary.extend(bytes(1, &entry));
     }
-    file
+    let mut event = double(1, seconds(row.wall));
+    event.extend(integer(2, row.steps));
+    event.extend(bytes(5, &summary));
+    record(&event)
 }
 
 fn seconds(time: SystemTime) -> f64 {
@@ -37,12 +37,13 @@ fn seconds(time: SystemTime) -> f64 {
 }
 
 /// A record of the TFRecord format.
-fn record(file: &mut Vec<u8>, data: &[u8]) {
+fn record(data: &[u8]) -> Vec<u8> {
     let length = (data.len() as u64).to_le_bytes();
-    file.extend(length);
+    let mut file = length.to_vec();
     file.extend(masked(&length).to_le_bytes());
     file.extend(data);
     file.extend(masked(data).to_le_bytes());
+    file
 }
 
 /// The format's checksum: CRC-32C, rotated and offset so that checksums of checksums stay sound.
@@ -94,8 +95,7 @@ mod tests {
 
     #[test]
     fn records_carry_length_and_checksums() {
-        let mut file = Vec::new();
-        record(&mut file, b"123456789");
+        let file = record(b"123456789");
         assert_eq!(file.len(), 8 + 4 + 9 + 4);
         // CRC-32C of "123456789" is 0xe3069283, the check value of its definition.
         let expected = 0xe306_9283_u32.rotate_right(15).wrapping_add(0xa282_ead8);
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn values_that_are_not_finite_are_left_out() {
         let row = |value| LogRow { wall: UNIX_EPOCH, steps: 1, values: vec![("tag".into(), value)] };
-        let holds = |value| events(UNIX_EPOCH, &[row(value)]).windows(3).any(|window| window == b"tag");
+        let holds = |value| event(&row(value)).windows(3).any(|window| window == b"tag");
         assert!(holds(1.0) && !holds(f64::NAN));
     }
 }
