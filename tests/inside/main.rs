@@ -24,6 +24,7 @@ mod quality;
 mod race;
 mod reference;
 mod replay;
+mod resume;
 mod round_trip;
 #[path = "../support/mod.rs"]
 mod support;
