@@ -169,7 +169,7 @@ fn judge(require: Option<f64>, report: &Report) -> CommandEnd {
     CommandEnd::NotMet
 }
 
-/// The file that was asked for, or `default`, numbered where others have that name: several evaluations may run at once.
+/// The file that was asked for, or `default`, numbered where others have that name: evaluations may run side by side.
 fn reserve(args: &Args, default: impl Fn() -> PathBuf) -> Result<Reserved, BadInput> {
     args.out.as_deref().map_or_else(|| Reserved::numbered(&default()), Reserved::new)
 }

@@ -10,7 +10,7 @@ use crate::base::check::BadInput;
 use crate::base::fsio::Reserved;
 use crate::base::threads::processors;
 use crate::present::run::RUNS;
-use crate::present::study::folder::Folder;
+use crate::present::study::folder::{Folder, RunState};
 use crate::present::study::plan::{Planned, StudyBudget, plan};
 use crate::present::study::shard::Shard;
 use crate::present::study::{Study, tables};
@@ -100,7 +100,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     if let Some(json) = json {
         json.write(tables::json(&results)?.as_bytes())?;
     }
-    if results.finished() > 0 {
+    if results.finished() + results.diverged.len() > 0 {
         super::print(&text::results(&results))?;
     }
     conclude(args, &out, &ended, results.finished(), results.runs.len())
@@ -119,7 +119,12 @@ fn share(args: &Args, study: &Study) -> Result<(usize, usize), BadInput> {
 
 fn list(planned: &Planned, folder: &Folder, shard: Shard) -> String {
     let runs = planned.plan.runs.iter().enumerate().filter(|(i, _)| shard.has(*i)).map(|(i, run)| {
-        let state = if folder.finished(&run.name) { "finished" } else { "to do" };
+        let state = match folder.state(&run.name) {
+            RunState::Missing => "to do",
+            RunState::Finished(_) => "finished",
+            RunState::Diverged => "diverged",
+            RunState::Damaged(_) => "damaged, to do again",
+        };
         vec![(i + 1).to_string(), run.name.clone(), state.to_string()]
     });
     let runs: Vec<_> = runs.collect();

@@ -41,12 +41,15 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Go on with a training that was stopped or killed, from its last checkpoint, as if it had never stopped
-    #[arg(long, value_name = "RUN", conflicts_with_all = ["config", "track", "vehicle", "set", "seed", "minutes", "steps", "out"])]
+    #[arg(long, value_name = "RUN", conflicts_with_all = OTHERS)]
     resume: Option<PathBuf>,
     /// End at once, without saving, when standard input ends: how a study takes its trainings along
     #[arg(long, hide = true)]
     attached: bool,
 }
+
+/// What a run that is gone on with has already.
+const OTHERS: [&str; 8] = ["config", "track", "vehicle", "set", "seed", "minutes", "steps", "out"];
 
 const HELP: &str =
     "A file needs only the keys that differ from the built-in a2rl.toml. Ctrl-C finishes the update and saves. A run \

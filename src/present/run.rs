@@ -40,6 +40,8 @@ pub const POLICY: &str = "policy.safetensors";
 /// Folder of the policies on the way, in a run folder.
 pub const SNAPSHOTS: &str = "snapshots";
 
+/// How a training met numbers that are not finite, in a run folder; there is none of one that did not.
+pub const DIVERGED: &str = "diverged.json";
 /// Folder of the TensorBoard event file, in a run folder.
 pub const TENSORBOARD: &str = "tensorboard";
 

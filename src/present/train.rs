@@ -6,7 +6,7 @@ mod resume;
 pub mod room;
 
 pub use choose::evaluate;
-pub use record::{DIVERGED, told};
+pub use record::told;
 pub use resume::resume;
 
 use super::run::checkpoints::{Checkpoints, Found, Taken};
@@ -130,8 +130,8 @@ fn diverged(run: &Run, setback: &Setback) -> Error {
     let (folder, told) = (run.folder.display(), told(setback));
     Error::Failed(format!(
         "the training diverges: {told}\nThe last policy that is whole is in {folder}/{SNAPSHOTS}; none was chosen.\n\
-         Lower ppo.learning_rate or ppo.value_coefficient, or what is out of proportion in env.reward, env.noise or the \
-         vehicle."
+         Lower ppo.learning_rate or ppo.value_coefficient, or what is out of proportion in env.reward, env.noise or \
+         the vehicle."
     ))
 }
 

@@ -27,8 +27,7 @@ pub fn race(setup: &Setup) -> Race {
     Race::new(&setup.config.env, &setup.track, &setup.vehicle, setup.config.seed)
 }
 
-/// The policy that was taken of a training as `setup` says. Under a budget of steps it does not say how long it took:
-/// the same training then gives the same file.
+/// The policy that was taken of a training as `setup` says.
 pub fn policy_of(setup: &Setup, taken: &NetworkSnapshot) -> Snapshot {
     let Setup { config, track, vehicle } = setup;
     let about = About {
@@ -38,7 +37,7 @@ pub fn policy_of(setup: &Setup, taken: &NetworkSnapshot) -> Snapshot {
         eval: config.eval.clone(),
         seed: config.seed,
         steps: taken.steps,
-        seconds: if config.budget.steps.is_some() { 0.0 } else { taken.seconds },
+        seconds: taken.seconds,
     };
     Snapshot { network: taken.network.clone(), about }
 }

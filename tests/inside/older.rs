@@ -50,9 +50,11 @@ fn a_policy_flies_other_vehicles_as_well_as_it_did() {
 
 #[test]
 fn the_configuration_of_a_run_says_what_it_said() {
-    let now =
-        config("a2rl", &["track=square", "budget.steps=4000000", "seed=2", "eval.agents=64", "budget.snapshots=2"]);
+    let said = ["track=square", "budget.steps=4000000", "seed=2", "eval.agents=64", "budget.snapshots=2"];
+    // Its entropy was that of the Gaussian before the tanh, without a key to say so.
+    let now = config("a2rl", &[&said[..], &["ppo.entropy_squashed=false", "ppo.entropy_end=1.0"]].concat());
     assert_eq!(config(CONFIG, &[]), now);
+    assert!(config("a2rl", &[]).ppo.entropy_squashed);
 }
 
 /// Runs from before penalties could grow do not have the keys for it.

@@ -12,6 +12,9 @@ pub fn results(results: &Results) -> String {
     for (axis, levels) in &results.axes {
         text += &format!("\n\n{}", groups(axis, levels));
     }
+    if let Some(told) = results.told_diverged() {
+        text += &format!("\n\n{told}");
+    }
     let best = results.ranking.iter().any(|place| place.best.is_some());
     text += "\n\nlaps: share of fixed-start agents that complete a lap with a run's best snapshot, mean over \
              seeds (95 %, Student's t).";

@@ -5,7 +5,8 @@ use super::display::Display;
 use crate::base::claim::Claim;
 use crate::base::fsio;
 use crate::cli::interrupt;
-use crate::present::study::folder::{Folder, same};
+use crate::present::run::DIVERGED;
+use crate::present::study::folder::{Folder, RunState, same};
 use crate::present::study::plan::Planned;
 use crate::present::study::result::{self, RESULT, RunLabel, RunResult};
 use crate::present::study::shard::Shard;
@@ -35,6 +36,8 @@ pub struct WorkEnd {
 /// How a run ended.
 enum Made {
     Done(Box<RunResult>),
+    /// Its numbers were not finite on the way.
+    Diverged,
     /// Finished by another process in the meantime.
     Before,
     Elsewhere,
@@ -45,7 +48,7 @@ enum Made {
 /// Makes all runs of the part that are not finished.
 pub fn work(work: &Work) -> anyhow::Result<WorkEnd> {
     let runs = work.planned.plan.runs.iter().enumerate();
-    let missing = runs.filter(|(i, run)| work.shard.has(*i) && !work.folder.finished(&run.name)).map(|(i, _)| i);
+    let missing = runs.filter(|(i, run)| work.shard.has(*i) && open(work.folder, &run.name)).map(|(i, _)| i);
     let missing: Vec<usize> = missing.collect();
     if missing.is_empty() {
         return Ok(WorkEnd::default());
@@ -64,7 +67,7 @@ pub fn work(work: &Work) -> anyhow::Result<WorkEnd> {
                     display.end(line, done.fetch_add(1, Ordering::Relaxed) + 1, &remark);
                     if let Ok(mut ended) = ended.lock() {
                         match made {
-                            Made::Done(_) | Made::Before => {}
+                            Made::Done(_) | Made::Diverged | Made::Before => {}
                             Made::Elsewhere => ended.elsewhere.push(name.clone()),
                             Made::Stopped => ended.interrupted = true,
                             Made::Failed(why) => ended.failed.push((name.clone(), why)),
@@ -89,11 +92,17 @@ fn remark(made: &Made) -> String {
             result.trained.seconds,
             100.0 * result.fixed.lap_completion
         ),
+        Made::Diverged => "diverged: its numbers were not finite on the way; it is not ranked".into(),
         Made::Before => "was finished by another process".into(),
         Made::Elsewhere => "is being made by another process".into(),
         Made::Stopped => "stopped".into(),
         Made::Failed(why) => format!("failed: {}", why.lines().next().unwrap_or_default()),
     }
+}
+
+/// Whether there is a run to be made.
+fn open(folder: &Folder, name: &str) -> bool {
+    matches!(folder.state(name), RunState::Missing | RunState::Damaged(_))
 }
 
 /// Trains a run and makes its folder appear, all at once.
@@ -104,19 +113,27 @@ fn make(work: &Work, run: usize, heard: &(dyn Fn(&str) + Sync)) -> anyhow::Resul
         return Ok(Made::Stopped);
     }
     let Some(claim) = Claim::take(&folder.work(), &about.name)? else { return Ok(Made::Elsewhere) };
-    if folder.finished(&about.name) {
+    if !open(folder, &about.name) {
         return Ok(Made::Before);
     }
     let training = ChildTraining { config: &planned.config, settings, threads: *threads, out: claim.work() };
-    match child::train(&training, heard)? {
-        ChildEnd::Trained => {}
+    let diverged = match child::train(&training, heard)? {
         ChildEnd::Stopped => return Ok(Made::Stopped),
-        ChildEnd::Failed(why) => return Ok(Made::Failed(why)),
-    }
+        ChildEnd::Failed(why) if !claim.work().join(DIVERGED).is_file() => return Ok(Made::Failed(why)),
+        ChildEnd::Trained | ChildEnd::Failed(_) => claim.work().join(DIVERGED).is_file(),
+    };
     // A file that the configuration names may have changed since it was planned.
     same(claim.work(), setup)?;
     let setting = &planned.plan.settings[about.setting].name;
     let about = RunLabel { run: &about.name, setting, seed: about.seed, threads: *threads };
+    if let RunState::Damaged(why) = folder.state(about.run) {
+        let aside = folder.set_aside(about.run)?;
+        crate::cli::tell(&format!("{} was damaged ({why}); it is in {} now", about.run, aside.display()));
+    }
+    if diverged {
+        claim.publish(&folder.run(about.run))?;
+        return Ok(Made::Diverged);
+    }
     let result = result::of(claim.work(), &about, planned.plan.section_share)?;
     let text = serde_json::to_string_pretty(&result)? + "\n";
     fsio::replace(&claim.work().join(RESULT), text.as_bytes())?;

@@ -180,8 +180,8 @@ impl<'a, E: Environment> Training<'a, E> {
         collect(self.level, environment, &self.network, &self.rng, &mut self.tiles, &mut self.rollout, first_step);
     }
 
-    /// Generalised advantages of the rollout, normalised over the batch; returns the explained variance and the standard
-    /// deviation before.
+    /// Generalised advantages of the rollout, normalised over the batch; returns the explained variance and their
+    /// standard deviation before.
     fn advantages(&mut self) -> (f64, f64) {
         let (gamma, lambda) = (self.config.gamma as f32, self.config.lambda as f32);
         let lanes = self.rollout.tile_rows * crate::base::lane::LANES;

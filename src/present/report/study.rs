@@ -57,6 +57,7 @@ pub fn page(results: &Results, figures: &[Figure]) -> String {
     let body = html! {
         h1 { "Study " (plan.study) }
         p { (counts) }
+        @if let Some(told) = results.told_diverged() { p { (told) } }
         (tables::ranking(results))
         @for figure in figures {
             figure id=(figure.name) { (PreEscaped(&figure.svg)) figcaption { (figure.caption) } }

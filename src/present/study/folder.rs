@@ -8,8 +8,9 @@ use crate::base::check::{BadInput, Check};
 use crate::base::encode;
 use crate::base::error::{Error, Result};
 use crate::base::fsio;
-use crate::present::run::resolved;
+use crate::present::run::{DIVERGED, POLICY, resolved};
 use crate::race::config::Setup;
+use crate::race::snapshot::Snapshot;
 use std::path::{Path, PathBuf};
 
 /// Name of the plan in it, by which it is known.
@@ -19,6 +20,19 @@ const STUDY: &str = "study.toml";
 /// Folder of the finished runs in it, and of those being made.
 const RUNS: &str = "runs";
 const WORK: &str = ".work";
+/// Folder of damaged runs that were made again.
+const ASIDE: &str = "damaged";
+
+/// What there is of a run.
+#[derive(Clone, Debug)]
+pub enum RunState {
+    Missing,
+    Finished(Box<RunResult>),
+    /// Its numbers were not finite on the way: it is not what its setting is worth.
+    Diverged,
+    /// Something that a training did not leave so, and why.
+    Damaged(String),
+}
 
 /// Where a study is kept.
 #[derive(Clone, Debug)]
@@ -42,7 +56,7 @@ impl Folder {
             }
         }
         for (run, (_, setup)) in planned.plan.runs.iter().zip(&planned.runs) {
-            if folder.finished(&run.name) {
+            if matches!(folder.state(&run.name), RunState::Finished(_) | RunState::Diverged) {
                 same(&folder.run(&run.name), setup)?;
             }
         }
@@ -73,19 +87,53 @@ impl Folder {
 
     /// Whether the run has its result.
     pub fn finished(&self, name: &str) -> bool {
-        self.run(name).join(RESULT).is_file()
+        matches!(self.state(name), RunState::Finished(_))
+    }
+
+    /// What there is of the run.
+    pub fn state(&self, name: &str) -> RunState {
+        let folder = self.run(name);
+        if !folder.exists() {
+            return RunState::Missing;
+        }
+        let whole = || -> Result<RunState, BadInput> {
+            for part in ["config.toml", "track.toml", "vehicle.toml"] {
+                let path = folder.join(part);
+                if std::fs::metadata(&path).map_or(0, |file| file.len()) == 0 {
+                    return Err(BadInput::new(path.display(), "nothing", "what the run was trained as", ""));
+                }
+            }
+            if folder.join(DIVERGED).is_file() {
+                return Ok(RunState::Diverged);
+            }
+            let result = json(&folder.join(RESULT), "the result of a run")?;
+            Snapshot::read(&folder.join(POLICY))?;
+            Ok(RunState::Finished(Box::new(result)))
+        };
+        whole().unwrap_or_else(|BadInput { place, found, .. }| RunState::Damaged(format!("{place}: {found}")))
+    }
+
+    /// Puts a damaged run aside, where it can be looked at; says where.
+    pub fn set_aside(&self, name: &str) -> Result<PathBuf> {
+        let (from, to) = (self.run(name), fsio::free(&self.path.join(ASIDE).join(name)));
+        let moved = std::fs::create_dir_all(self.path.join(ASIDE)).and_then(|()| std::fs::rename(&from, &to));
+        moved.map_err(Error::write(&from))?;
+        Ok(to)
     }
 
     /// The results of all that is finished.
     pub fn results(&self) -> Result<Results> {
         let plan: StudyPlan = json(&self.path.join(PLAN), "the plan of a study")?;
         plan.check().map_err(|invalid| BadInput::at(self.path.join(PLAN).display(), invalid))?;
-        let read = |name: &str| -> Result<Option<RunResult>, BadInput> {
-            let path = self.run(name).join(RESULT);
-            if path.is_file() { json(&path, "the result of a run").map(Some) } else { Ok(None) }
-        };
-        let runs = plan.runs.iter().map(|run| read(&run.name)).collect::<Result<_, _>>()?;
-        Ok(Results::new(plan, runs))
+        let (mut runs, mut diverged) = (Vec::new(), Vec::new());
+        for run in &plan.runs {
+            let state = self.state(&run.name);
+            if let RunState::Diverged = state {
+                diverged.push(run.name.clone());
+            }
+            runs.push(if let RunState::Finished(result) = state { Some(*result) } else { None });
+        }
+        Ok(Results::new(plan, runs, diverged))
     }
 
     /// Writes the tables of all that is finished, in place of earlier ones.

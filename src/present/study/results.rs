@@ -15,6 +15,8 @@ pub struct Results {
     pub metrics: Vec<Metric>,
     /// In the plan's order; none where a run is not finished.
     pub runs: Vec<Option<RunResult>>,
+    /// Names of the runs that diverged; they count nowhere.
+    pub diverged: Vec<String>,
     /// The finished runs of each setting, summarised; in the plan's order.
     pub settings: Vec<RunGroup>,
     /// The same for each value of each axis that varies; none of a study with a single axis, where settings say it.
@@ -33,7 +35,7 @@ pub struct RunGroup {
 }
 
 impl Results {
-    pub fn new(plan: StudyPlan, runs: Vec<Option<RunResult>>) -> Self {
+    pub fn new(plan: StudyPlan, runs: Vec<Option<RunResult>>, diverged: Vec<String>) -> Self {
         let metrics = metrics(&plan.sections);
         let group = |name: &str, belongs: &dyn Fn(usize) -> bool| {
             let places = plan.runs.iter().enumerate().filter(|(_, run)| belongs(run.setting)).map(|(i, _)| i);
@@ -73,7 +75,7 @@ impl Results {
             Scored { name: setting.name.clone(), scores: finished().map(score).collect() }
         });
         let ranking = ranking(scored.collect());
-        Self { plan, metrics, runs, settings, axes, ranking }
+        Self { plan, metrics, runs, diverged, settings, axes, ranking }
     }
 
     /// Whether times belong to the result: they do under a budget of time, and under one of steps they would differ
@@ -90,6 +92,12 @@ impl Results {
     /// Runs that are finished.
     pub fn finished(&self) -> usize {
         self.runs.iter().flatten().count()
+    }
+
+    /// What is to be said of runs that diverged; nothing where none did.
+    pub fn told_diverged(&self) -> Option<String> {
+        let names = self.diverged.join(", ");
+        (!names.is_empty()).then(|| format!("diverged, and neither ranked nor part of any mean: {names}"))
     }
 
     /// How the numbers were made, in words.

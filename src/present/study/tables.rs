@@ -112,6 +112,7 @@ pub fn json(results: &Results) -> Result<String> {
         "study": results.plan.study,
         "planned": results.runs.len(),
         "finished": results.finished(),
+        "diverged": results.diverged,
         "plan": results.plan,
         "methods": methods,
         "ranking": results.ranking,

@@ -6,19 +6,16 @@ use crate::base::error::{Error, Result};
 use crate::base::fsio;
 use crate::learn::ppo::state::{Setback, rate_after};
 use crate::learn::ppo::train::{Flow, Iteration, NetworkSnapshot, Observer};
-use crate::present::run::Run;
 use crate::present::run::checkpoints::{Checkpoints, Note, Taken};
 use crate::present::run::health::Watched;
 use crate::present::run::live::{LiveLogs, LogLengths};
 use crate::present::run::metrics::LogRow;
+use crate::present::run::{DIVERGED, Run};
 use crate::race::checkpoint::RaceState;
 use crate::race::config::Setup;
 use crate::race::env::Race;
 use crate::race::env::tally::Tally;
 use crate::race::train::policy_of;
-
-/// File that says how a training met numbers that are not finite; there is none of one that did not.
-pub const DIVERGED: &str = "diverged.json";
 
 /// Writes down what it observes.
 pub struct Recorder<'a> {
