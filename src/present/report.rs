@@ -8,6 +8,7 @@ pub mod diagnosis;
 pub mod figures;
 mod flown;
 pub mod folder;
+mod health;
 pub mod identification;
 pub mod lap;
 mod map;

@@ -59,9 +59,19 @@ fn a_policy_is_replayed_and_its_sensitivity_told() {
     let ran = racer(folder.path(), &["report", "run", "--beside", "run"]);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let page = std::fs::read_to_string(folder.path().join(ran.out.trim())).unwrap();
-    assert!(page.contains("run, random start") && page.matches("<svg").count() == 4, "{page}");
-    for (figure, part) in [("training", "seed 1"), ("lap", "no lap"), ("commands", "thrust"), ("spread", "randomised")]
-    {
+    assert!(
+        page.contains("run, random start")
+            && page.contains("Health of the training")
+            && page.matches("<svg").count() == 5,
+        "{page}"
+    );
+    for (figure, part) in [
+        ("training", "seed 1"),
+        ("lap", "no lap"),
+        ("commands", "thrust"),
+        ("spread", "randomised"),
+        ("health", "explained"),
+    ] {
         let svg = std::fs::read_to_string(folder.path().join(format!("run/report/{figure}.svg"))).unwrap();
         assert!(svg.contains(part), "{figure}");
     }

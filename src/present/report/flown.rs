@@ -3,10 +3,11 @@
 use super::commands::{self, Commands};
 use super::figures::{lap_title, training};
 use super::run::{Figure, page};
-use super::{Drawn, lap, spread as spreading};
+use super::{Drawn, health, lap, spread as spreading};
 use crate::base::error::Result;
 use crate::base::lane::Level;
 use crate::base::threads;
+use crate::present::run::health::{BOUNDS, judge};
 use crate::present::run::metrics::METRICS;
 use crate::present::run::{evaluated, find, metrics};
 use crate::race::env::Race;
@@ -34,12 +35,27 @@ pub fn draw(path: &Path, beside: Option<&Path>) -> Result<Drawn> {
         let one = FlownRun::new(path)?;
         let other = beside.map(FlownRun::new).transpose()?;
         let all: Vec<&FlownRun> = [&one].into_iter().chain(&other).collect();
-        let figures = figures(path, &all)?;
-        let rows: Vec<_> = all.iter().map(|f| (f.name.as_str(), &f.report)).collect();
-        let page = page(&format!("Run {}", one.name), &one.snapshot.about, &rows, &figures);
+        let mut figures = figures(path, &all)?;
+        let rows = healthy_or_not(path)?;
+        let caption = "Numbers of the training; orange lines are the bounds of what is healthy.";
+        figures.push(Figure { name: "health", caption: caption.into(), svg: health::svg(&rows)? });
+        let judged = judge(&rows.iter().map(|row| row.1).collect::<Vec<_>>());
+        let flown: Vec<_> = all.iter().map(|f| (f.name.as_str(), &f.report)).collect();
+        let title = format!("Run {}", one.name);
+        let page = page(&title, &one.snapshot.about, &flown, &health::table(&judged), &figures);
         let named = figures.into_iter().map(|figure| (format!("{}.svg", figure.name), figure.svg));
         Ok(Drawn { page, figures: named.collect() })
     })?
+}
+
+/// The numbers of the log that say how healthy the training in `path` was; none where an older racer did not keep one.
+fn healthy_or_not(path: &Path) -> Result<Vec<health::HealthRow>> {
+    let mut names = ["steps"; BOUNDS.len() + 1];
+    names[1..].iter_mut().zip(BOUNDS).for_each(|(name, bound)| *name = bound.column);
+    let rows = metrics::read_known(&path.join(METRICS), names)?;
+    let row =
+        |row: &[Option<f64>; BOUNDS.len() + 1]| (row[0].unwrap_or_default() / 1e6, std::array::from_fn(|i| row[i + 1]));
+    Ok(rows.iter().map(row).collect())
 }
 
 /// The figures of the first of `all`, which is the run in `path`; the others' commands stand beside its own.

@@ -5,10 +5,11 @@ pub use super::study::Figure;
 use crate::race::eval::Report;
 use crate::race::eval::score::Benchmark;
 use crate::race::snapshot::About;
-use maud::{PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
-/// The page as HTML: what was trained, how it does (and another run beside it), and the figures.
-pub fn page(title: &str, about: &About, flown: &[(&str, &Report)], figures: &[Figure]) -> String {
+/// The page as HTML: what was trained, how it does (and another run beside it), how healthy the training was, and the
+/// figures.
+pub fn page(title: &str, about: &About, flown: &[(&str, &Report)], health: &Markup, figures: &[Figure]) -> String {
     const STYLE: &str = "figure{margin:1.5em 0}figcaption{color:#555}";
     let percent = |x: f64| format!("{:.1} %", 100.0 * x);
     let lap =
@@ -39,6 +40,7 @@ pub fn page(title: &str, about: &About, flown: &[(&str, &Report)], figures: &[Fi
             tr { th {} @for (name, _) in &columns { th { (name) } } }
             @for (name, cell) in &rows { tr { td { (name) } @for (_, b) in &columns { td { (cell(b)) } } } }
         }
+        (health)
         @for figure in figures {
             figure id=(figure.name) { (PreEscaped(&figure.svg)) figcaption { (figure.caption) } }
         }

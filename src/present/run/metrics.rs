@@ -91,17 +91,32 @@ pub fn to_csv(rows: &[LogRow], header: bool) -> Result<Vec<u8>> {
 
 /// Columns of the CSV file at `path` by name, row by row; nothing where a cell is empty.
 pub fn read<const N: usize>(path: &Path, names: [&str; N]) -> Result<Vec<[Option<f64>; N]>, BadInput> {
+    read_where(path, names, true)
+}
+
+/// The same, with nothing in place of columns that are not there: those of an older racer's log may be fewer.
+pub fn read_known<const N: usize>(path: &Path, names: [&str; N]) -> Result<Vec<[Option<f64>; N]>, BadInput> {
+    read_where(path, names, false)
+}
+
+fn read_where<const N: usize>(path: &Path, names: [&str; N], all: bool) -> Result<Vec<[Option<f64>; N]>, BadInput> {
     let failed = |found: String| BadInput::new(path.display(), found, "the log of a training, metrics.csv", "");
-    let mut csv = csv::Reader::from_path(path).map_err(|error| failed(error.to_string()))?;
+    let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
+    // A training under way, or one that lost power, may end in half a row.
+    let rows = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
+    let mut csv = csv::Reader::from_reader(rows.as_bytes());
     let header = csv.headers().map_err(|error| failed(error.to_string()))?.clone();
-    let mut places = [0; N];
+    let mut places = [None; N];
     for (place, name) in places.iter_mut().zip(names) {
-        *place = header.iter().position(|known| known == name).ok_or_else(|| failed(format!("no column `{name}`")))?;
+        *place = header.iter().position(|known| known == name);
+        if place.is_none() && all {
+            return Err(failed(format!("no column `{name}`")));
+        }
     }
     let mut rows = Vec::new();
     for record in csv.records() {
         let record = record.map_err(|error| failed(error.to_string()))?;
-        rows.push(places.map(|place| record.get(place).and_then(|cell| cell.parse().ok())));
+        rows.push(places.map(|place| record.get(place?).and_then(|cell| cell.parse().ok())));
     }
     Ok(rows)
 }
@@ -118,6 +133,9 @@ mod tests {
         std::fs::write(file.path(), to_csv(&[row], true).unwrap()).unwrap();
         assert_eq!(read(file.path(), ["c", "steps", "a/b"]).unwrap(), [[None, Some(64.0), Some(1.5)]]);
         assert!(read(file.path(), ["d"]).unwrap_err().to_string().contains("`d`"));
+        assert_eq!(read_known(file.path(), ["d", "steps"]).unwrap(), [[None, Some(64.0)]]);
+        std::fs::write(file.path(), "steps,c\n64,1\n128,2.").unwrap();
+        assert_eq!(read(file.path(), ["c"]).unwrap(), [[Some(1.0)]], "half a row is none");
     }
 
     #[test]
