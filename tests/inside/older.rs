@@ -54,7 +54,7 @@ fn the_configuration_of_a_run_says_what_it_said() {
     // Its entropy was that of the Gaussian before the tanh, without a key to say so.
     let now = config("a2rl", &[&said[..], &["ppo.entropy_squashed=false", "ppo.entropy_end=1.0"]].concat());
     assert_eq!(config(CONFIG, &[]), now);
-    assert!(config("a2rl", &[]).ppo.entropy_squashed);
+    assert!(!config(CONFIG, &[]).ppo.entropy_squashed);
 }
 
 /// Runs from before penalties could grow do not have the keys for it.
