@@ -22,9 +22,27 @@ impl Slopes {
     /// For laps with the nodes of `lap`.
     pub fn new(lap: &Nodes) -> Self {
         let (nodes, segments) = (lap.positions.len(), lap.steps.len());
-        // The last two nodes know the first ones again, and durations know many nodes.
-        let inner = 3 * (nodes - 2);
-        Slopes { gradient: vec![0.0; 3 * nodes + segments], matrix: System::new(inner, 6 + segments) }
+        let (mut place, mut first) = (vec![0; 3 * nodes + segments], Vec::new());
+        // Each duration stands behind the nodes of its segment, and knows them and the last one before them; a node
+        // knows the two before it. The last two nodes and the last duration know the first nodes again: the border.
+        let (mut node, mut at) = (0_usize, 0_usize);
+        for (segment, &steps) in lap.steps.iter().enumerate() {
+            let before = at;
+            for _ in 0..steps {
+                for c in 0..3 {
+                    place[3 * node + c] = at;
+                    let back = if node < 2 { 0 } else { place[3 * (node - 2)] };
+                    first.push(back);
+                    at += 1;
+                }
+                node += 1;
+            }
+            place[3 * nodes + segment] = at;
+            first.push(before.saturating_sub(4));
+            at += 1;
+        }
+        first.truncate(at - 7);
+        Slopes { gradient: vec![0.0; 3 * nodes + segments], matrix: System::new(place, first) }
     }
 
     /// Adds `slope` and `curve` of variables at these places; nothing where a place is none.
@@ -170,4 +188,24 @@ fn thrust(
         }
     }
     (slope, curve)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twice the gates are twice the numbers, whatever their steps: work grows no faster than the lap does.
+    #[test]
+    fn the_equations_grow_with_the_lap() {
+        let entries = |gates: usize| {
+            let steps: Vec<usize> = (0..gates).map(|g| 20 + 7 * (g % 4)).collect();
+            let nodes = steps.iter().sum();
+            let lap = Nodes { positions: vec![Vector3::zeros(); nodes], seconds: vec![1.0; gates], steps };
+            Slopes::new(&lap).matrix.entries() as f64
+        };
+        for gates in [4, 40] {
+            let growth = entries(2 * gates) / entries(gates);
+            assert!((1.9..2.1).contains(&growth), "{growth}");
+        }
+    }
 }
