@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use racer::base::lane::Level;
-use racer::learn::ppo::train::Training;
+use racer::learn::ppo::training::Training;
 use racer::model::constants::CONTROL_S;
 use racer::model::dynamics::{Craft, Factors, State};
 use racer::model::sim::Batch;

@@ -12,6 +12,7 @@ pub mod rollout;
 pub mod squash;
 pub mod state;
 pub mod train;
+pub mod training;
 pub mod update;
 
 use crate::base::lane::{Lane, Lane32};

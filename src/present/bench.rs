@@ -7,7 +7,7 @@ use crate::base::peak;
 use crate::learn::nn::{HIDDEN, TILE_BLOCKS};
 use crate::learn::policy::ACTIONS;
 use crate::learn::ppo::Environment;
-use crate::learn::ppo::train::Training;
+use crate::learn::ppo::training::Training;
 use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::{Craft, Factors, State};
 use crate::model::sim::Batch;
