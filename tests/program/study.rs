@@ -97,6 +97,7 @@ fn shipped_studies_hold_what_they_say() {
         ("seeds", 2, 16),
         ("regularisation", 2, 8),
         ("regularisation_factorial", 8, 24),
+        ("entropy", 6, 12),
     ] {
         let (document, study) = Study::open(name).unwrap();
         let plan = plan(name, &document, &study, StudyBudget::default()).unwrap().plan;

@@ -17,6 +17,7 @@ const LIBRARY: Library = Library {
         ("seeds", include_str!("../../../configs/studies/seeds.toml")),
         ("regularisation", include_str!("../../../configs/studies/regularisation.toml")),
         ("regularisation_factorial", include_str!("../../../configs/studies/regularisation_factorial.toml")),
+        ("entropy", include_str!("../../../configs/studies/entropy.toml")),
     ],
 };
 /// Most seeds of a study; beyond that somebody has mistaken the key for the seed itself.
