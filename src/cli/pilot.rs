@@ -61,7 +61,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let mission = Mission { network, track: about.track, vehicle: about.vehicle, range, laps: args.laps };
     let around = Surroundings::of(&mission.track, &mission.vehicle);
     let mut live = Live::new(&mission, &around);
-    interrupt::watch("handing back; Ctrl-C again ends at once")?;
+    interrupt::watch("handing back; Ctrl-C again ends at once");
     tell(&format!("{} in {}; states at port {port}, setpoints to {to}", mission.track.name, mission.vehicle.name));
     let mut told = |phase: Phase, reason: Option<Reason>| {
         tell(&format!("{}{}", name(phase), reason.map_or(String::new(), |r| format!(": {}", r.text()))));

@@ -62,8 +62,7 @@ const HELP: &str = "A study is a file with a grid. This one makes six runs:
 
 Further keys: config (base configuration), steps in place of minutes, agents, section_share, jobs; [set] for keys that \
 are the same in all runs; [cases.GROUP] for named values of several keys together. Built in are paper_configurations, \
-cpu_configurations, seeds_paper, seeds, regularisation, \
-regularisation_factorial and entropy.
+cpu_configurations, seeds_paper, seeds, regularisation, regularisation_factorial and entropy.
 
 Every setting is checked before the first run begins. After any interruption the same command goes on, without \
 repeating a finished run; with --steps it ends in the same tables. Ctrl-C ends the runs under way, which are repeated \
