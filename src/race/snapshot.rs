@@ -189,6 +189,28 @@ mod tests {
         assert_eq!(read.about, written.about);
     }
 
+    /// Version 2 kept eight random observations and the time of the training.
+    #[test]
+    fn a_file_of_version_2_is_read() {
+        let written = snapshot();
+        let mut content = written.content().unwrap();
+        let mut metadata: serde_json::Value = serde_json::from_str(&content.metadata).unwrap();
+        metadata["format"] = "racer-policy-2".into();
+        metadata["training"]["seconds"] = 61.5.into();
+        let names: Vec<_> =
+            metadata["flying"]["action"].as_array().unwrap().iter().map(|a| a["name"].clone()).collect();
+        metadata["flying"]["action"] = names.into();
+        content.metadata = metadata.to_string();
+        let answers = ["self_test.observation", "self_test.action"];
+        content.tensors.retain(|t| !t.name.starts_with("self_test") || answers.contains(&t.name.as_str()));
+        for t in content.tensors.iter_mut().filter(|t| t.name.starts_with("self_test")) {
+            t.bytes.truncate(8 * t.shape[1] * 4);
+            t.shape[0] = 8;
+        }
+        let read = Snapshot::from_bytes(&content.to_bytes().unwrap()).unwrap();
+        assert_eq!((read.network, read.about), (written.network, written.about));
+    }
+
     #[test]
     fn damaged_files_are_refused() {
         let bytes = snapshot().to_bytes().unwrap();

@@ -87,8 +87,11 @@ pub fn read_rows(file: &SafeTensors) -> Result<Rows, Invalid> {
     })
 }
 
-/// Observations and actions of the self-test of versions 1 and 2, which had nothing else.
-pub fn read_answers(file: &SafeTensors) -> Result<(Vec<[f32; OBSERVATIONS]>, Vec<[f32; ACTIONS]>), Invalid> {
+/// Observations, and the actions that answer them.
+type Answers = (Vec<[f32; OBSERVATIONS]>, Vec<[f32; ACTIONS]>);
+
+/// The self-test of versions 1 and 2, which had nothing else.
+pub fn read_answers(file: &SafeTensors) -> Result<Answers, Invalid> {
     const SAMPLES: usize = 8;
     Ok((read_table(file, SEEN, SAMPLES)?, read_table(file, ANSWERS, SAMPLES)?))
 }
