@@ -50,10 +50,14 @@ fn setup(more: &[&str]) -> Setup {
 
 /// Trains in the new folder `name`, until so many iterations are done.
 fn train(at: &Path, name: &str, more: &[&str], stop_after: usize, watch: &mut Watch) -> (PathBuf, Result<Ended>) {
+    train_as(at, name, &setup(more), stop_after, watch)
+}
+
+fn train_as(at: &Path, name: &str, setup: &Setup, stop_after: usize, watch: &mut Watch) -> (PathBuf, Result<Ended>) {
     let folder = at.join(name);
     let run = Run::create(Some(&folder), name).unwrap();
     watch.stop_after = if stop_after == 0 { usize::MAX } else { stop_after };
-    (folder, make(&run, &setup(more), 2, "test", watch))
+    (folder, make(&run, setup, 2, "test", watch))
 }
 
 /// Everything that a training decides: policies as files, and of the log what is no clock.
@@ -95,6 +99,19 @@ fn what_goes_on_is_what_never_stopped() {
         assert!(decided(&folder) == expected, "{name}");
     }
     assert!(resumed(&whole).0.unwrap().is_none(), "finished is finished");
+}
+
+/// Effects that remember: commands on their way, a filter's slope, a battery's polarisation.
+#[test]
+fn a_vehicle_with_effects_goes_on_with_what_it_remembers() {
+    let at = tempfile::tempdir().unwrap();
+    let mut setup = setup(&[]);
+    setup.vehicle.effects.sizes.insert("rate_delay".into(), [("delay".to_string(), 0.025)].into());
+    let (whole, ended) = train_as(at.path(), "whole", &setup, 0, &mut Watch::default());
+    assert!(matches!(ended.unwrap(), Ended::Finished(_)));
+    let (stopped, _) = train_as(at.path(), "stopped", &setup, 5, &mut Watch::default());
+    assert!(matches!(resumed(&stopped).0.unwrap(), Some(Ended::Finished(_))));
+    assert!(decided(&stopped) == decided(&whole));
 }
 
 #[test]

@@ -99,11 +99,11 @@ impl<'a> Recorder<'a> {
 pub fn told(setback: &Setback) -> String {
     let &Setback { what, steps, back_to, times, .. } = setback;
     let million = |steps: u64| steps as f64 / 1e6;
-    let found = format!("{what} was not finite after {:.1} M steps", million(steps));
+    let found = format!("{what} was not finite after {:.2} M steps", million(steps));
     match setback.is_last() {
         true => format!("{found}, at {:.3} of the configured learning rate", rate_after(times - 1)),
         false => {
-            format!("{found}; back to {:.1} M, at {:.3} of the learning rate", million(back_to), rate_after(times))
+            format!("{found}; back to {:.2} M, at {:.3} of the learning rate", million(back_to), rate_after(times))
         }
     }
 }
