@@ -67,6 +67,7 @@ Exit codes:
   3    a flight log is damaged; its readable part was used
   4    `--require` was not met
   5    `--fail-on-effect` found an effect
+  6    `racer check` found what stops identification and diagnosis
   130  stopped by Ctrl-C";
 
 /// How a command ended.
@@ -78,6 +79,7 @@ enum CommandEnd {
     Damaged,
     NotMet,
     Effect,
+    Problem,
     Interrupted,
 }
 
@@ -90,6 +92,7 @@ impl CommandEnd {
             CommandEnd::Damaged => 3,
             CommandEnd::NotMet => 4,
             CommandEnd::Effect => 5,
+            CommandEnd::Problem => 6,
             CommandEnd::Interrupted => 130,
         }
     }

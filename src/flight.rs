@@ -18,10 +18,11 @@ pub mod sensors;
 pub mod series;
 pub mod spans;
 pub mod table;
-mod ulog;
+pub mod ulog;
 pub mod vehicle;
 pub mod write;
 
+pub use format::FlightSummary;
 pub use motors::MOTORS;
 pub use open::{Options, open, open_with};
 pub use vehicle::{VehicleKind, VehicleRecord};

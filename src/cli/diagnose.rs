@@ -8,6 +8,7 @@ mod worth;
 use super::{CommandEnd, logs, progress};
 use crate::base::check::{BadInput, Invalid};
 use crate::base::fsio;
+use crate::flight::Options;
 use crate::insight::diagnose::finding::Verdict;
 use crate::insight::diagnose::{Diagnosed, diagnose};
 use crate::insight::identify::{self, identify};
@@ -60,6 +61,12 @@ pub struct Args {
     /// What the logs' fields mean: a mapping's name or file [default: the format's own, or the one that fits]
     #[arg(long, value_name = "NAME|FILE")]
     mapping: Option<String>,
+    /// Which flight of a blackbox file, counted from 1 [default: the longest]
+    #[arg(long, value_name = "N")]
+    flight: Option<usize>,
+    /// Go on where a log contradicts itself, such as a rate that goes against its setpoint
+    #[arg(long)]
+    despite_problems: bool,
     /// Without --vehicle: the vehicle that lends what the logs cannot tell
     #[arg(long, value_name = "NAME|FILE", default_value = "seed_class")]
     base: String,
@@ -90,7 +97,10 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let given = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
     check_racing(args)?;
     let bar = progress::bar();
-    let logs = logs::read(&args.logs, args.mapping.as_deref(), &bar)?;
+    let logs = logs::read(&args.logs, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
+    if !args.despite_problems {
+        identify::refuse::problems(&logs)?;
+    }
     let damaged = logs::damaged(&logs);
     let base = given.map_or_else(|| identified(args, &logs, &bar), Ok)?;
     let diagnosed = diagnose(logs, &base, &mut |step, share| {

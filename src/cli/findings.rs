@@ -1,8 +1,8 @@
 //! A log's check as text.
 
 use super::columns::table;
-use crate::flight::Log;
 use crate::flight::spans::length;
+use crate::flight::{FlightSummary, Log};
 use crate::insight::quality::{LogFinding, ParameterCoverage, Quality, Severity, StreamSummary};
 
 /// What the log holds, stream by stream.
@@ -20,6 +20,16 @@ pub fn streams(streams: &[StreamSummary]) -> String {
     };
     let header = ["stream", "samples", "rate, Hz", "fresh", "from, s", "to, s"];
     table(&header, streams.iter().map(row).collect(), 1..6)
+}
+
+/// A line for each of several flights; nothing where there is one.
+pub fn flights(flights: &[FlightSummary]) -> String {
+    let row = |flight: &FlightSummary| {
+        let start = flight.start_s.map_or("-".into(), |start| format!("{start:.1}"));
+        vec![flight.number.to_string(), start, format!("{:.1}", flight.span_s), flight.end.clone()]
+    };
+    let header = ["--flight", "starts, s", "length, s", "ended by"];
+    if flights.is_empty() { String::new() } else { table(&header, flights.iter().map(row).collect(), 0..3) + "\n\n" }
 }
 
 /// The findings, the worst first.

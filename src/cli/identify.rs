@@ -4,6 +4,7 @@ use super::{CommandEnd, columns, logs, progress, tell};
 use crate::base::check::{BadInput, Check};
 use crate::base::encode;
 use crate::base::fsio::Reserved;
+use crate::flight::Options;
 use crate::insight::identify::document::{CheckedLog, IdentificationDocument};
 use crate::insight::identify::estimate::Estimate;
 use crate::insight::identify::result::Identification;
@@ -31,6 +32,9 @@ pub struct Args {
     /// What the logs' fields mean: a mapping's name or file [default: the format's own, or the one that fits]
     #[arg(long, value_name = "NAME|FILE")]
     mapping: Option<String>,
+    /// Which flight of a blackbox file, counted from 1 [default: the longest]
+    #[arg(long, value_name = "N")]
+    flight: Option<usize>,
     /// Go on where a log contradicts itself, such as a rate that goes against its setpoint
     #[arg(long)]
     despite_problems: bool,
@@ -81,7 +85,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let reserve = |path: &Option<PathBuf>| path.as_deref().map(Reserved::new).transpose();
     let (out, json, page) = (Reserved::new(&args.out)?, reserve(&args.json)?, reserve(&args.report)?);
     let bar = progress::bar();
-    let checked = logs::read(&args.logs, args.mapping.as_deref(), &bar)?;
+    let checked = logs::read(&args.logs, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
     if !args.despite_problems {
         refuse::problems(&checked)?;
     }

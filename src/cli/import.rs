@@ -30,7 +30,8 @@ const HELP: &str = "Examples:
   racer import mine.csv --out flight.mcap --mapping mine.toml
   racer import bag_0.mcap --out flight.mcap --mapping mine.toml
 
-Built-in mappings: canonical, betaflight, px4, betaflight_csv, indiflight, neurobem, nanobench.
+Built-in mappings: canonical, betaflight, px4, px4_ros2, mavros, betaflight_csv, crazyflie, agilicious, indiflight,
+neurobem, nanobench.
 
 A mapping names the columns of each stream; leave out what a log lacks:
   body = \"FLU\"                     # or FRD; of one stream where it stands below it

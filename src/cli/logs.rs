@@ -1,17 +1,23 @@
 //! Flight logs read and checked, for every command that learns from several.
 
 use super::{findings, tell};
+use crate::base::check::BadInput;
 use crate::base::error::Result;
-use crate::flight::{self, Readable};
+use crate::flight::{self, Options, Readable};
 use crate::insight::quality::{Quality, check};
 use indicatif::ProgressBar;
 use std::path::PathBuf;
 
 /// The logs, checked; what was found is told beside `bar`.
-pub fn read(paths: &[PathBuf], mapping: Option<&str>, bar: &ProgressBar) -> Result<Vec<Quality>> {
+pub fn read(paths: &[PathBuf], options: Options, bar: &ProgressBar) -> Result<Vec<Quality>> {
+    if options.flight.is_some() && paths.len() > 1 {
+        let found = format!("{} logs", paths.len());
+        let advice = "convert each with `racer import --flight N`, and give those";
+        return Err(BadInput::new("--flight", found, "one log", advice).into());
+    }
     let read = |path: &PathBuf| {
         bar.set_message(format!("reading {}", path.display()));
-        let opened = flight::open_with(path, flight::Options { mapping, flight: None })?;
+        let opened = flight::open_with(path, options)?;
         let quality = check(&opened.log);
         bar.suspend(|| {
             tell(&opened.log.name);

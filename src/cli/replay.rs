@@ -42,6 +42,9 @@ pub struct Args {
     /// What a log's fields mean: a mapping's name or file [default: the format's own, or the one that fits]
     #[arg(long, value_name = "NAME|FILE")]
     mapping: Option<String>,
+    /// Which flight of a blackbox file, counted from 1 [default: the longest]
+    #[arg(long, value_name = "N")]
+    flight: Option<usize>,
 }
 
 const HELP: &str = "Three files are written. replay.html plays the flight in any browser, without a network: space \
@@ -88,6 +91,9 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
 type Show = (Replay, PathBuf, bool);
 
 fn flown(args: &Args) -> anyhow::Result<Show> {
+    if args.flight.is_some() {
+        return Err(refuse("--flight", "a policy", "a flight log, which may hold several"));
+    }
     if args.mapping.is_some() {
         return Err(refuse("--mapping", "a policy", "a flight log, whose fields it names"));
     }
@@ -111,7 +117,7 @@ fn recorded(args: &Args, path: &Path) -> anyhow::Result<Show> {
             return Err(refuse(option, "a flight log", "a policy, which is flown anew"));
         }
     }
-    let opened = flight::open_with(path, flight::Options { mapping: args.mapping.as_deref(), flight: None })?;
+    let opened = flight::open_with(path, flight::Options { mapping: args.mapping.as_deref(), flight: args.flight })?;
     opened.remarks.iter().for_each(|remark| tell(remark));
     let track = args.track.as_deref().map(Track::load).transpose()?;
     let shown = replay::recorded(&opened.log, track.as_ref())?;

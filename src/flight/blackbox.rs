@@ -24,9 +24,8 @@ mod scales;
 mod sequence;
 pub mod tally;
 
-use super::format::{Content, File, Format};
+use super::format::{Content, File, FlightSummary, Format};
 use super::mapping::Mapping;
-use super::table::Tables;
 use crate::base::check::BadInput;
 use flight::Flight;
 use std::collections::BTreeSet;
@@ -51,8 +50,7 @@ impl Format for Blackbox {
     }
 
     fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
-        let (tables, remarks) = tables(file.bytes, file.name, &mapping.columns(), file.flight)?;
-        Ok(Content { tables, remarks })
+        content(file.bytes, file.name, &mapping.columns(), file.flight)
     }
 
     fn has_flights(&self) -> bool {
@@ -63,12 +61,12 @@ impl Format for Blackbox {
 /// Reads `flight`, counted from 1, or else the longest: the (table, column) pairs that are `wanted`. Standard fields
 /// that were not recorded are NaN. Also remarks about what was chosen, left out or is uncertain. Fails where there is
 /// no such flight, or no such field.
-pub fn tables(
+fn content(
     bytes: &[u8],
     name: &str,
     wanted: &BTreeSet<(&str, &str)>,
     flight: Option<usize>,
-) -> Result<(Tables, Vec<String>), BadInput> {
+) -> Result<Content, BadInput> {
     let flights = split(bytes);
     let count = flights.len();
     let place = |index: usize| format!("{name}, flight {}", index + 1);
@@ -78,7 +76,7 @@ pub fn tables(
         Some(number) => match number.checked_sub(1).and_then(|index| Some((index, flights.get(index)?))) {
             Some((index, bytes)) => {
                 let flight = flight::read(bytes, &place(index), wanted)?;
-                Ok((flight.tables, flight.remarks))
+                Ok(Content { tables: flight.tables, remarks: flight.remarks, flights: Vec::new() })
             }
             None => Err(BadInput::new("--flight", number, &format!("1 to {count}, which {name} has"), "")),
         },
@@ -86,17 +84,15 @@ pub fn tables(
 }
 
 /// The longest flight that can be read, and what was chosen from.
-fn longest(
-    flights: &[&[u8]],
-    read: impl Fn(usize, &[u8]) -> Result<Flight, BadInput>,
-) -> Result<(Tables, Vec<String>), BadInput> {
+fn longest(flights: &[&[u8]], read: impl Fn(usize, &[u8]) -> Result<Flight, BadInput>) -> Result<Content, BadInput> {
     /// More would only hide the rest of the message.
     const MOST: usize = 20;
     let mut best: Option<(usize, Flight)> = None;
-    let (mut failed, mut spans) = (None, Vec::new());
+    let (mut failed, mut spans, mut found) = (None, Vec::new(), Vec::new());
     for (index, bytes) in flights.iter().enumerate() {
         match read(index, bytes) {
             Ok(flight) => {
+                found.push(flight.summary(index + 1));
                 spans.push(format!("{:.1} s", flight.span_s));
                 if best.as_ref().is_none_or(|(_, best)| flight.span_s > best.span_s) {
                     best = Some((index, flight));
@@ -104,6 +100,8 @@ fn longest(
             }
             Err(error) => {
                 spans.push("unreadable".into());
+                let end = format!("cannot be read: {}", error.found);
+                found.push(FlightSummary { number: index + 1, start_s: None, span_s: 0.0, end });
                 failed = failed.or(Some(error));
             }
         }
@@ -117,7 +115,8 @@ fn longest(
         let chosen = format!("flight {number} of {count} ({}{more}), the longest; --flight chooses", spans.join(", "));
         remarks.insert(0, chosen);
     }
-    Ok((flight.tables, remarks))
+    let flights = if flights.len() > 1 { found } else { Vec::new() };
+    Ok(Content { tables: flight.tables, remarks, flights })
 }
 
 /// The bytes of each flight.

@@ -21,6 +21,21 @@ pub struct File<'a> {
 pub struct Content {
     pub tables: Tables,
     pub remarks: Vec<String>,
+    /// All flights of the file, where it has several and none was asked for.
+    pub flights: Vec<FlightSummary>,
+}
+
+/// One of several flights in a file.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct FlightSummary {
+    /// Counted from 1: what `--flight` takes.
+    pub number: usize,
+    /// When it starts, by the clock of the flight controller; none where it cannot be read.
+    pub start_s: Option<f64>,
+    /// How long it is.
+    pub span_s: f64,
+    /// What ends it, or why it cannot be read.
+    pub end: String,
 }
 
 /// A kind of file that holds flights.
@@ -59,6 +74,6 @@ impl<'a> File<'a> {
 
 impl From<Tables> for Content {
     fn from(tables: Tables) -> Self {
-        Content { tables, remarks: Vec::new() }
+        Content { tables, remarks: Vec::new(), flights: Vec::new() }
     }
 }

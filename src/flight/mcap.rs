@@ -38,8 +38,11 @@ impl Format for Mcap {
         file.bytes.starts_with(b"\x89MCAP")
     }
 
-    fn mapping(&self, _: &File) -> Result<(&'static str, Option<String>), BadInput> {
-        Ok(("canonical", None))
+    fn mapping(&self, file: &File) -> Result<(&'static str, Option<String>), BadInput> {
+        let known = FOREIGN.into_iter().find(|(topics, _)| mentions(file.bytes, topics.as_bytes()));
+        Ok(known.map_or(("canonical", None), |(topics, called)| {
+            (called, Some(format!("it has topics below {topics}: read with the built-in mapping `{called}`")))
+        }))
     }
 
     fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
@@ -51,6 +54,17 @@ impl Format for Mcap {
         }
         Ok(tables.into())
     }
+}
+
+/// How the topics of others begin, and the mapping for them.
+const FOREIGN: [(&str, &str); 2] = [("/fmu/out/", "px4_ros2"), ("/mavros/", "mavros")];
+
+/// Whether the start or the end of a file, where channels are declared, has this text.
+fn mentions(bytes: &[u8], text: &[u8]) -> bool {
+    const LOOKED_AT: usize = 1 << 20;
+    let start = &bytes[..bytes.len().min(LOOKED_AT)];
+    let end = &bytes[bytes.len().saturating_sub(LOOKED_AT)..];
+    [start, end].iter().any(|part| part.windows(text.len()).any(|window| window == text))
 }
 
 /// A topic of a file.

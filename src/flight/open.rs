@@ -4,7 +4,7 @@ use super::Log;
 use super::blackbox::Blackbox;
 use super::blackbox::decoded::Decoded;
 use super::csv::files::Csv;
-use super::format::{Content, File, Format};
+use super::format::{Content, File, FlightSummary, Format};
 use super::mapping::Mapping;
 use super::mcap::Mcap;
 use super::ulog::ULog;
@@ -31,6 +31,8 @@ pub struct Opened {
     pub mapping: String,
     /// Choices that were made for the user.
     pub remarks: Vec<String>,
+    /// All flights of the file, where it has several and none was asked for.
+    pub flights: Vec<FlightSummary>,
 }
 
 /// Reads a log with the named mapping, or the format's own.
@@ -59,9 +61,9 @@ pub fn open_bytes(path: &Path, bytes: &[u8], options: Options) -> Result<Opened,
             (Mapping::built_in(called)?, called, chosen)
         }
     };
-    let Content { tables, remarks } = format.tables(&file, &mapping)?;
+    let Content { tables, remarks, flights } = format.tables(&file, &mapping)?;
     let log = mapping.apply(&tables, name)?;
-    Ok(Opened { log, mapping: called.into(), remarks: chosen.into_iter().chain(remarks).collect() })
+    Ok(Opened { log, mapping: called.into(), remarks: chosen.into_iter().chain(remarks).collect(), flights })
 }
 
 /// The bytes of a file that may be a log.

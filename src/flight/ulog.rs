@@ -51,8 +51,14 @@ impl Format for ULog {
         let wanted = |topic: &str| mapping.wanted(topic) || made && vehicle::SOURCES.contains(&topic);
         let (mut tables, parameters) = read(file.bytes, file.name, &wanted)?;
         let remark = vehicle::complete(&mut tables, &parameters);
-        Ok(Content { tables, remarks: remark.into_iter().collect() })
+        Ok(Content { tables, remarks: remark.into_iter().collect(), flights: Vec::new() })
     }
+}
+
+/// The topics that are `wanted`, as they were recorded.
+#[cfg(feature = "internals")]
+pub fn tables(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result<Tables, BadInput> {
+    Ok(read(bytes, name, wanted)?.0)
 }
 
 /// How reading ended early.
@@ -192,10 +198,6 @@ impl<'a> LogReader<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn tables(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result<Tables, BadInput> {
-        Ok(read(bytes, name, wanted)?.0)
-    }
 
     fn message(kind: u8, payload: &[u8]) -> Vec<u8> {
         [&(payload.len() as u16).to_le_bytes()[..], &[kind], payload].concat()

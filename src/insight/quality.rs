@@ -2,9 +2,11 @@
 
 mod clipping;
 mod coverage;
+mod ground;
+mod impacts;
+mod mounting;
 mod offset;
 mod outliers;
-mod phases;
 mod signs;
 mod timing;
 mod tumbling;
@@ -12,7 +14,7 @@ mod tumbling;
 pub use coverage::ParameterCoverage;
 
 use crate::flight::spans::{self, Span};
-use crate::flight::{Log, Readable};
+use crate::flight::{Log, Readable, VehicleKind};
 use crate::insight::criteria::usable::SHORTEST_FLIGHT_S;
 use serde::Serialize;
 
@@ -90,14 +92,33 @@ impl LogFinding {
     }
 }
 
+impl Quality {
+    /// What stops identification: the worst that contradicts itself, or is no flight of a multirotor. Damage of the
+    /// file does not.
+    pub fn problem(&self) -> Option<&LogFinding> {
+        self.findings.iter().find(|finding| finding.severity == Severity::Problem && finding.stream != "file")
+    }
+}
+
+/// A finding where the vehicle is none that the models are of.
+fn of_another_kind(kind: VehicleKind) -> Option<LogFinding> {
+    let what = format!("the vehicle is a {}", kind.name().replace('_', " "));
+    let what = if kind == VehicleKind::Other { "the vehicle is no multirotor".into() } else { what };
+    let so = "models here are of multirotors: nothing of it can be identified";
+    (kind != VehicleKind::Multirotor).then(|| LogFinding::new(Severity::Problem, "vehicle_kind", "vehicle", what, so))
+}
+
 /// Checks, and repairs what can be repaired. Never fails: a log with nothing usable says so.
 pub fn check(log: &Log) -> Quality {
     let mut findings = Vec::new();
     if let Readable::Prefix { bytes, of, why } = &log.readable {
         let share = 100.0 * *bytes as f64 / (*of).max(1) as f64;
-        let what = format!("readable up to byte {bytes} of {of} ({share:.0} %): {why}");
+        let last = log.imu.time_s.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let until = if last.is_finite() { format!(", {last:.1} s of flight time") } else { String::new() };
+        let what = format!("readable up to byte {bytes} of {of} ({share:.0} %){until}: {why}");
         findings.push(LogFinding::new(Severity::Problem, "damaged_file", "file", what, "what comes after is lost"));
     }
+    findings.extend(log.vehicle.kind.and_then(of_another_kind));
     let (mut log, streams) = timing::repair(log, &mut findings);
     if log.imu.is_empty() {
         findings.push(LogFinding::new(
@@ -112,14 +133,15 @@ pub fn check(log: &Log) -> Quality {
     }
     let moved_s = offset::align(&mut log, &mut findings);
     let mut holes = timing::gaps(&log, &mut findings);
-    holes.extend(phases::impacts(&log, &mut findings));
-    holes.extend(phases::ground(&log, &mut findings));
+    holes.extend(impacts::find(&log, &mut findings));
+    holes.extend(ground::find(&log, &mut findings));
     holes.extend(clipping::find(&log, &mut findings));
     holes.extend(tumbling::find(&log, &mut findings));
     let times = &log.imu.time_s;
     let mut usable = spans::without([times[0], times[times.len() - 1]], &holes);
     usable.retain(|span| span[1] - span[0] >= SHORTEST_FLIGHT_S.get());
     signs::judge(&log, &usable, &mut findings);
+    mounting::find(&log, &usable, &mut findings);
     outliers::count(&log, &mut findings);
     findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     let parameters = coverage::told(&log, &usable);

@@ -26,6 +26,7 @@ mod reference;
 mod replay;
 mod resume;
 mod round_trip;
+mod states;
 #[path = "../support/mod.rs"]
 mod support;
 mod track;

@@ -136,7 +136,8 @@ fn columns_choose_the_mapping_or_what_there_is_is_said() {
                   pos_x,pos_y,pos_z,mot1_radps,mot2_radps,mot3_radps,mot4_radps,vbat_V\n\
                   0,0,0,0,0,0,0,1,0,0,9.8,1,0,0,0,0,0,1250,1250,1250,1250,16\n";
     let folder = folder(&[("a.csv", header.as_bytes()), ("b.csv", b"t_s,x\n0,1\n")]);
-    let Opened { log, mapping, remarks } = flight::open_with(&folder.path().join("a.csv"), Options::default()).unwrap();
+    let Opened { log, mapping, remarks, .. } =
+        flight::open_with(&folder.path().join("a.csv"), Options::default()).unwrap();
     assert_eq!((mapping.as_str(), log.setpoint.rows[0][3]), ("neurobem", 0.5));
     assert!(remarks[0].contains("neurobem"));
     let error = flight::open(&folder.path().join("b.csv"), None).unwrap_err().to_string();
@@ -191,6 +192,9 @@ fn blackbox_frames_flights_and_rates() {
     let opened = open_bytes("a.bbl", &cut, Options::default()).unwrap();
     assert_eq!(opened.log.setpoint.len(), 2);
     assert!(opened.remarks[0].contains("flight 2 of 2"), "{:?}", opened.remarks);
+    let ends: Vec<_> = opened.flights.iter().map(|flight| (flight.number, flight.end.as_str())).collect();
+    assert_eq!(ends, [(1, "the recording breaks off"), (2, "the log was closed")]);
+    assert!((opened.flights[1].span_s - 1e-4).abs() < 1e-9 && opened.flights[1].start_s == Some(1e-4));
     let first = open_bytes("a.bbl", &cut, Options { flight: Some(1), mapping: None }).unwrap().log;
     assert!(first.setpoint.len() == 1 && first.readable != Readable::Whole);
     assert!(open_bytes("a.bbl", &cut, Options { flight: Some(3), mapping: None }).unwrap_err().contains("1 to 2"));

@@ -51,6 +51,11 @@ impl Armed {
         }
     }
 
+    /// Whether it was disarmed in the end.
+    pub fn ended(&self) -> bool {
+        self.now == Some(false)
+    }
+
     /// With the one column "armed".
     pub fn table(self) -> Table {
         self.rows.table(["armed".to_string()])

@@ -42,7 +42,7 @@ impl Format for Decoded {
         if let Some(gps) = beside(file)? {
             tables.tables.insert("gps".into(), gps);
         }
-        Ok(Content { tables, remarks })
+        Ok(Content { tables, remarks, flights: Vec::new() })
     }
 }
 

@@ -100,6 +100,11 @@ impl Rows {
         }
     }
 
+    /// Time of the first row.
+    pub fn start_s(&self) -> Option<f64> {
+        self.time_s.first().copied()
+    }
+
     /// From the first row to the last.
     pub fn span_s(&self) -> f64 {
         self.time_s.last().zip(self.time_s.first()).map_or(0.0, |(last, first)| last - first)

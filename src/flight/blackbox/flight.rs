@@ -10,6 +10,7 @@ use super::header::Header;
 use super::tally::Tally;
 use crate::base::check::BadInput;
 use crate::base::document::nearest;
+use crate::flight::format::FlightSummary;
 use crate::flight::table::{LOG_TIME, Table, Tables};
 use crate::flight::{Readable, VehicleRecord};
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,8 +20,19 @@ const EVENT: [&str; 3] = ["event", "first", "second"];
 pub struct Flight {
     pub tables: Tables,
     pub span_s: f64,
+    /// Time of its first main frame.
+    start_s: Option<f64>,
+    /// What ends it.
+    end: &'static str,
     /// What was left out, or is uncertain.
     pub remarks: Vec<String>,
+}
+
+impl Flight {
+    /// In a line of a table of flights.
+    pub fn summary(&self, number: usize) -> FlightSummary {
+        FlightSummary { number, start_s: self.start_s, span_s: self.span_s, end: self.end.into() }
+    }
 }
 
 /// Reads the (table, column) pairs that are `wanted`. Standard fields that were not recorded are NaN.
@@ -62,7 +74,12 @@ pub fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Resul
             armed.event(time_us, event);
         }
     });
-    let span_s = main.rows.span_s();
+    let (span_s, start_s) = (main.rows.span_s(), main.rows.start_s());
+    let end = match (&tally, armed.ended()) {
+        (_, true) => "disarmed",
+        (Tally { closed: true, .. }, _) => "the log was closed",
+        _ => "the recording breaks off",
+    };
     let mut remarks = remarks(&header, &tally);
     remarks.extend(heading(&definitions));
     let mut tables: BTreeMap<String, Table> = BTreeMap::from([("main".into(), main.table())]);
@@ -77,7 +94,7 @@ pub fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Resul
         }
     }
     let vehicle = VehicleRecord { max_rate_rad_s: header.max_rates_rad_s(), ..VehicleRecord::default() };
-    Ok(Flight { tables: Tables { tables, vehicle, readable: readable(&tally) }, span_s, remarks })
+    Ok(Flight { tables: Tables { tables, vehicle, readable: readable(&tally) }, span_s, start_s, end, remarks })
 }
 
 /// The fields of a frame that are wanted.

@@ -37,7 +37,7 @@ pub struct Vector<U> {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, bound = "U: serde::de::DeserializeOwned + Default")]
 pub struct Scalar<U> {
-    /// Column of x; with a minus before its name, x is its negative.
+    /// Column of x; with a minus before its name, x is its negative; with a question mark behind it a file may lack it.
     pub field: Option<String>,
     /// In place of `field`: several columns, whose mean x is.
     pub mean: Option<Vec<String>>,

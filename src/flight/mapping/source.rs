@@ -50,6 +50,9 @@ impl<'a> Sources<'a> {
     pub fn flag(&self, key: &str, part: &'a States, flag: &'a Flag) -> Result<Told, Missing> {
         let source = flag.source.as_deref().unwrap_or(&part.source);
         let table = self.table(key, source)?;
+        if optional(&flag.field) && !table.columns.contains_key(column(&flag.field)) {
+            return Ok(Told::new());
+        }
         let values = self.column(key, source, table, column(&flag.field))?;
         let stamps = self.stamps(key, source, table, part.time.as_ref())?;
         Ok(stamps.into_iter().zip(values.iter().map(|&x| flag.value(x))).collect())
@@ -155,6 +158,9 @@ impl Open<'_> {
         let key = format!("{}.{name}", self.key);
         let mut columns = Vec::new();
         for field in quantity.fields() {
+            if optional(field) && !self.table.columns.contains_key(column(field)) {
+                return Ok(vec![f64::NAN; self.table.rows()]);
+            }
             columns.push(self.sources.column(&key, self.source, self.table, column(field))?);
         }
         Ok((0..self.table.rows()).map(|i| quantity.value(columns.iter().map(|column| column[i]))).collect())

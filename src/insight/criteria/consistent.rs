@@ -37,6 +37,16 @@ criteria! {
     /// Correlation of velocity with the change of position below which a frame is wrong.
     VELOCITY_CORRELATION = 0.5, Assumed("a smoothed or late velocity still has more");
 
+    /// Share of the squares of the turns that a rotation of the IMU has to explain.
+    MOUNTING_FIT = 0.8, Assumed("gyro and attitude agree to a few percent; setpoints are followed late");
+    /// Share of what is unexplained without it that it has to explain.
+    MOUNTING_BETTER = 0.2, Assumed("noise is not mended by turning it");
+    /// Least turning about a second axis, as a share of that about the first, that tells a rotation.
+    MOUNTING_RANK = 0.02, Assumed("turns about one axis leave the angle about it open");
+    /// Rotation of the IMU that is told, rad.
+    MOUNTING_SEEN_RAD = 0.17, Assumed("ten degrees: a fifth of each axis shows in another");
+    /// Rotation of the IMU that makes everything wrong, rad.
+    MOUNTING_WRONG_RAD = 0.5, Assumed("thirty degrees: half of each axis shows in another");
     /// Share of the commands with a time stamp of the IMU that makes it one clock.
     ONE_CLOCK_SHARE = 0.9, Assumed("clocks that run apart share stamps by chance only");
     /// Share of the thrust commands at one ratio to the rotor speed that makes them one signal.

@@ -36,6 +36,13 @@ criteria! {
     STILL_FORCE = 1.0, Assumed("accelerometers are off by less");
     /// Share of the usual effort of the rotors below which they do not carry the vehicle.
     IDLE_EFFORT = 0.6, Assumed("thrust goes with about the square of the effort: a third of the weight");
+    /// Change of the rate over a second, as a standard deviation, below which it rests, rad/s.
+    REST_RATE = 0.01,
+        Assumed("standing it was up to 0.006 in logs of five flight controllers; the calmest hover of 20 flights: 0.0125");
+    /// The same of the specific force, m/s2.
+    REST_FORCE = 0.03, Assumed("standing it was up to 0.02 in the same logs; in the air the rate moves in any case");
+    /// Command below which no vehicle flies, of the full one.
+    LEAST_COMMAND = 0.02, Theory("it would have fifty times its weight in thrust");
     /// Standing still in mid-flight that is a landing, s.
     LANDING_S = 2.0, Assumed("a chop falls for less");
     /// The same at the beginning and at the end of a log, s.

@@ -3,13 +3,12 @@
 use super::result::Identification;
 use crate::base::check::{BadInput, Check};
 use crate::base::error::{Error, Result};
-use crate::insight::quality::{LogFinding, Quality, Severity};
+use crate::insight::quality::Quality;
 
 /// Fails where a log contradicts itself, such as a rate that goes against its setpoint.
 pub fn problems(logs: &[Quality]) -> Result<(), BadInput> {
     for quality in logs {
-        let wrong = |finding: &&LogFinding| finding.severity == Severity::Problem && finding.stream != "file";
-        if let Some(finding) = quality.findings.iter().find(wrong) {
+        if let Some(finding) = quality.problem() {
             let expected = "a log without problems";
             let advice = format!("{}, or use the log all the same with --despite-problems", finding.so);
             return Err(BadInput::new(&quality.log.name, &finding.what, expected, advice));
