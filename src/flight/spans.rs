@@ -41,7 +41,8 @@ pub fn contain(spans: &[Span], t: f64) -> bool {
 
 /// Seconds covered by disjoint spans.
 pub fn length(spans: &[Span]) -> f64 {
-    spans.iter().map(|span| span[1] - span[0]).sum()
+    // Of nothing the sum has a minus.
+    spans.iter().map(|span| span[1] - span[0]).sum::<f64>() + 0.0
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 
 fn good() -> Log {
     static LOG: OnceLock<Log> = OnceLock::new();
-    LOG.get_or_init(|| truth::fly(&truth::Vehicle::draw(3), 3, 60.0, 1.0)).clone()
+    LOG.get_or_init(|| truth::fly(&truth::Vehicle::draw(7), 7, 100.0, 1.0)).clone()
 }
 
 fn find<'a>(quality: &'a Quality, kind: &str) -> &'a LogFinding {

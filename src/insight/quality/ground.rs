@@ -9,8 +9,8 @@ use crate::flight::Log;
 use crate::flight::series::held;
 use crate::flight::spans::{Span, joined, length, without};
 use crate::insight::criteria::usable::{
-    END_MARGIN_S, IDLE_EFFORT, LANDING_S, LEAST_COMMAND, LOG_END_S, REST_FORCE, REST_RATE, RESTING_S, STILL_FORCE,
-    STILL_RATE, TAKE_OFF_MARGIN_S, TOUCH_DOWN_MARGIN_S,
+    END_MARGIN_S, IDLE_EFFORT, LANDING_S, LEAST_COMMAND, LOG_END_S, REST_FORCE, REST_RATE, RESTING_S,
+    SHORTEST_FLIGHT_S, STILL_FORCE, STILL_RATE, TAKE_OFF_MARGIN_S, TOUCH_DOWN_MARGIN_S,
 };
 use crate::model::constants::GRAVITY_M_S2;
 
@@ -110,7 +110,10 @@ fn judged(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     let bins = bins(log, effort.as_ref().map(|(effort, _)| &effort[..]));
     let rests: Vec<bool> = (0..bins.len()).map(|i| rests(&bins, i)).collect();
     let moving = bins.iter().zip(&rests).filter(|(bin, rests)| !**rests && bin.effort > 0.0).map(|(bin, _)| bin.effort);
-    let idle = IDLE_EFFORT.get() * median(&moving.collect::<Vec<_>>());
+    let moving: Vec<f64> = moving.collect();
+    // A bump or two on a bench is no flight that tells what carries it.
+    let flown = moving.len() as f64 * BIN_S >= SHORTEST_FLIGHT_S.get();
+    let idle = if flown { IDLE_EFFORT.get() * median(&moving) } else { f64::NAN };
     let on_ground = |i: usize| {
         let bin = &bins[i];
         // Nothing is less than no number: a vehicle that never moves was never seen to need any effort.
@@ -150,7 +153,8 @@ fn bins(log: &Log, effort: Option<&[f64]>) -> Vec<Bin> {
 
 /// Whether nothing changes around a bin. What was not measured does not change.
 fn rests(bins: &[Bin], i: usize) -> bool {
-    let around = &bins[i.saturating_sub(NEIGHBOURS)..bins.len().min(i + NEIGHBOURS)];
+    let from = i.saturating_sub(NEIGHBOURS).min(bins.len().saturating_sub(2 * NEIGHBOURS));
+    let around = &bins[from..bins.len().min(from + 2 * NEIGHBOURS)];
     let changes = |k: usize| {
         let middle = around.iter().map(|bin| bin.means[k]).sum::<f64>() / around.len() as f64;
         (around.iter().map(|bin| (bin.means[k] - middle).powi(2)).sum::<f64>() / around.len() as f64).sqrt()
