@@ -38,7 +38,7 @@ criteria! {
     IDLE_EFFORT = 0.6, Assumed("thrust goes with about the square of the effort: a third of the weight");
     /// Change of the rate over a second, as a standard deviation, below which it rests, rad/s.
     REST_RATE = 0.01,
-        Assumed("standing it was up to 0.006 in logs of five flight controllers; the calmest hover of 20 flights: 0.0125");
+        Assumed("standing it was up to 0.006 in logs of five flight controllers, in the calmest hover 0.0125");
     /// The same of the specific force, m/s2.
     REST_FORCE = 0.03, Assumed("standing it was up to 0.02 in the same logs; in the air the rate moves in any case");
     /// Command below which no vehicle flies, of the full one.
