@@ -194,7 +194,8 @@ fn blackbox_frames_flights_and_rates() {
     assert!(opened.remarks[0].contains("flight 2 of 2"), "{:?}", opened.remarks);
     let ends: Vec<_> = opened.flights.iter().map(|flight| (flight.number, flight.end.as_str())).collect();
     assert_eq!(ends, [(1, "the recording breaks off"), (2, "the log was closed")]);
-    assert!((opened.flights[1].span_s - 1e-4).abs() < 1e-9 && opened.flights[1].start_s == Some(1e-4));
+    let near = |found: f64| (found - 1e-4).abs() < 1e-9;
+    assert!(near(opened.flights[1].span_s) && opened.flights[1].start_s.is_some_and(near));
     let first = open_bytes("a.bbl", &cut, Options { flight: Some(1), mapping: None }).unwrap().log;
     assert!(first.setpoint.len() == 1 && first.readable != Readable::Whole);
     assert!(open_bytes("a.bbl", &cut, Options { flight: Some(3), mapping: None }).unwrap_err().contains("1 to 2"));

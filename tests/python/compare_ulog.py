@@ -25,7 +25,7 @@ def ours(log, program, folder):
     printed = subprocess.run([program, str(log), folder], check=True, capture_output=True, text=True).stdout
     lines = (line.split("\t") for line in printed.splitlines())
     return {(topic, column): np.fromfile(pathlib.Path(folder) / name, "<f8") for topic, column, _, name in lines
-            if column != "@log_time"}
+            if column != "@log_time" and "_padding" not in column}
 
 
 def theirs(log):
@@ -33,7 +33,9 @@ def theirs(log):
     for topic in ULog(str(log)).data_list:
         name = topic.name if topic.multi_id == 0 else f"{topic.name}#{topic.multi_id}"
         for column, values in topic.data.items():
-            columns[name, column] = values.astype(float)
+            # Bytes that only fill up a record.
+            if "_padding" not in column:
+                columns[name, column] = values.astype(float)
     return columns
 
 
