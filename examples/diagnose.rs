@@ -25,8 +25,13 @@ fn main() -> Result<(), Error> {
 
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("extended.toml");
-    diagnosed.vehicle.save(&file)?;
-    let effects = Vehicle::load(&file.display().to_string())?.effects.sizes;
-    println!("the extended vehicle has {effects:?}");
+    match &diagnosed.vehicle {
+        Ok(vehicle) => {
+            vehicle.save(&file)?;
+            let effects = Vehicle::load(&file.display().to_string())?.effects.sizes;
+            println!("the extended vehicle has {effects:?}");
+        }
+        Err(why) => println!("there is no extended vehicle: {why}"),
+    }
     Ok(())
 }

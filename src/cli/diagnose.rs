@@ -108,14 +108,14 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         bar.set_message(step.to_string());
     });
     bar.finish_and_clear();
-    let Diagnosed { diagnosis, vehicle, .. } = &diagnosed;
+    let diagnosis = &diagnosed.diagnosis;
     super::print(&if args.plan { text::plan(diagnosis) } else { text::text(diagnosis) })?;
     output.write(&diagnosed)?;
     if let Some(policy) = &args.policy {
-        super::print(&worth::present(policy, &base, vehicle)?)?;
+        super::print(&worth::present(policy, &base, extended(&diagnosed, "--policy")?)?)?;
     }
     if let Some(minutes) = args.retrain {
-        super::print(&worth::retrained(&args.retrain_out, minutes, &base, vehicle)?)?;
+        super::print(&worth::retrained(&args.retrain_out, minutes, &base, extended(&diagnosed, "--retrain")?)?)?;
     }
     Ok(if args.fail_on_effect && diagnosis.verdict != Verdict::Clean {
         CommandEnd::Effect
@@ -124,6 +124,16 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     } else {
         CommandEnd::Done
     })
+}
+
+/// The extended vehicle that `option` asks for.
+fn extended<'a>(diagnosed: &'a Diagnosed, option: &str) -> Result<&'a Vehicle, BadInput> {
+    let none = |why: &String| {
+        let advice =
+            "no vehicle is written rather than a worse one: diagnose more flights together, or leave the option out";
+        BadInput::new(option, why, "an extended vehicle that predicts unseen flight no worse", advice)
+    };
+    diagnosed.vehicle.as_ref().map_err(none)
 }
 
 /// Whether policies can be flown and trained as was asked for: known before the diagnosis, which takes its time.

@@ -14,6 +14,7 @@ pub mod material;
 pub mod replicated;
 pub mod rival;
 pub mod shown;
+pub mod unseen;
 pub mod usable;
 
 use crate::base::check::BadInput;
@@ -73,6 +74,7 @@ pub fn all() -> impl Iterator<Item = &'static Criterion> {
         material::ALL,
         rival::ALL,
         complete::ALL,
+        unseen::ALL,
         chance::ALL,
         drifted::ALL,
         shown::ALL,

@@ -11,10 +11,13 @@
 
 pub mod actuator_response;
 pub mod adequacy;
+pub mod bend;
+pub mod bends;
 pub mod candidates;
 pub mod cause;
 pub mod channels;
 pub mod disambiguate;
+pub mod doubt;
 pub mod drift;
 pub mod extend;
 pub mod figures;
@@ -23,6 +26,7 @@ pub mod findings;
 pub mod fit;
 pub mod fitted;
 pub mod folds;
+pub mod forms;
 pub mod gain;
 pub mod gusts;
 pub mod horizon;
@@ -49,12 +53,16 @@ pub mod size;
 pub mod skew;
 pub mod structure;
 pub mod trial;
+pub mod unseen;
 pub mod whiten;
+pub mod whole;
+pub mod worse;
 
 use crate::base::stats::mean;
 use crate::insight::Watch;
 use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
+use crate::model::effects::Role;
 use crate::model::vehicle::Vehicle;
 use channels::NAMES;
 use finding::{Diagnosis, Finding, Residual, Status, Verdict};
@@ -70,8 +78,8 @@ use std::collections::BTreeMap;
 pub struct Diagnosed {
     /// What was found.
     pub diagnosis: Diagnosis,
-    /// The base vehicle with what was found.
-    pub vehicle: Vehicle,
+    /// The base vehicle with what was found; why there is none where it would be no vehicle, or predict worse.
+    pub vehicle: Result<Vehicle, String>,
     #[doc(hidden)]
     pub problem: Problem,
     #[doc(hidden)]
@@ -98,19 +106,20 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let usable_s = logs.iter().map(|q| crate::flight::spans::length(&q.usable)).sum();
     let problem = problem(logs, vehicle);
     let mut selection = select::select(&problem, watch);
+    whole::parts(&problem, &mut selection);
     disambiguate::clocks(&problem, &mut selection);
     let lost = disambiguate::chance(&problem, &mut selection);
     watch("judging", 0.85);
     let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
     let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
     let fitted = FittedSelection::new(&problem, &selection);
-    let Judgement { mut findings, judged, drift, unexplained } = findings::find(&fitted, lost, &structure);
+    let Judgement { mut findings, judged, drift, unexplained, small } = findings::find(&fitted, lost, &structure);
+    doubt::all(&fitted, &mut findings);
     watch("measuring the gain", 0.9);
-    // What is only suspected is no part of the extended vehicle.
-    let suspected: Vec<&str> = findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
-    let doubted = selection.added.iter().any(|a| suspected.contains(&a.card.id));
-    let kept = doubted.then(|| selection.without(&problem, &suspected));
-    let kept = kept.as_ref().unwrap_or(&selection);
+    let (kept, worse) = kept(&problem, &selection, &mut findings);
+    let kept = &kept;
+    let fitted_kept = FittedSelection::new(&problem, kept);
+    as_written(&fitted_kept, &mut findings);
     let held = gain::measure(&problem, &selection, kept);
     for finding in &mut findings {
         let one = judged.iter().find(|j| j.finding.effect == finding.effect);
@@ -125,7 +134,10 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         (true, false) => Verdict::Effects,
     };
     let (detectable, not_detectable) = plan::judge(&problem, &selection.reach);
-    let extended = extend::vehicle(&FittedSelection::new(&problem, kept), &findings);
+    let extended = match worse {
+        Some(worse) => Err(worse),
+        None => extend::vehicle(&fitted_kept, &findings),
+    };
     let diagnosis = Diagnosis {
         verdict,
         logs: problem.records.iter().map(|r| r.name.clone()).collect(),
@@ -133,6 +145,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         usable_s,
         findings,
         unexplained,
+        small,
         not_detectable,
         detectable,
         drift,
@@ -142,8 +155,40 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         captured: held.captured,
         structure_before: before,
         structure,
+        not_extended: extended.as_ref().err().cloned(),
     };
     Diagnosed { diagnosis, vehicle: extended, problem, selection }
+}
+
+/// Sizes in the report are those of the extended vehicle. Lost commands are counted, and not fitted.
+fn as_written(kept: &FittedSelection, findings: &mut [Finding]) {
+    let named = findings.iter_mut().filter(|f| f.status != Status::Suspected && !f.has(Role::CommandsLost));
+    for finding in named {
+        let held = kept.selection.added.iter().find(|a| a.card.id == finding.effect);
+        if let Some(added) = held {
+            finding.parameters = shown::parameters(kept, added.card);
+        }
+    }
+}
+
+/// What of the selection is kept: what is only suspected is no part of the extended vehicle, nor what makes unseen
+/// flight worse. With the reason where what is left is worse for all that.
+fn kept(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> (Selection, Option<String>) {
+    loop {
+        let suspected: Vec<&str> =
+            findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
+        let kept = selection.without(problem, &suspected);
+        let Some(worse) = worse::find(&FittedSelection::new(problem, &kept), &selection.base) else {
+            return (kept, None);
+        };
+        let rise = format!("{} {:.0} % worse", worse.channel, 100.0 * worse.by);
+        let blamed = worse.blamed.map(|card| card.id);
+        let finding = findings.iter_mut().find(|f| Some(f.effect) == blamed && f.status != Status::Suspected);
+        let Some(finding) = finding else {
+            return (kept, Some(format!("on flight that was not used for fitting it predicts {rise}")));
+        };
+        finding.suspect(format!("on flight that was not used for fitting it makes {rise}"));
+    }
 }
 
 /// By impact; what is only suspected comes last.

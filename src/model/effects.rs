@@ -7,6 +7,7 @@
 
 mod card;
 mod dependence;
+mod form;
 mod quantity;
 mod stages;
 mod values;
@@ -14,6 +15,7 @@ mod values;
 use crate::base::lane::Real;
 pub use card::{Card, CompactNumber, EffectKind, EffectParameter, Evidence, RateResponse, ResidualChannel, Role, Twin};
 pub use dependence::Quantities;
+pub use form::{Form, FormOf};
 pub use quantity::Quantity;
 pub use stages::{
     Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, RelativeWind, Sensed, Setpoint, ThrustInput,
@@ -107,6 +109,7 @@ effects! {
         rate_delay::RateDelay
         yaw_delay::YawDelay
         thrust_delay::ThrustDelay
+        link_delay::LinkDelay
         rate_second_order::RateSecondOrder
         rate_slew_limit::RateSlewLimit
         rate_expo::RateExpo
@@ -136,6 +139,8 @@ effects! {
         mass_or_density::MassOrDensity;
     log:
         stream_offset::StreamOffset
+        imu_late::ImuLate
+        odometry_late::OdometryLate
         clock_skew::ClockSkew
         velocity_lag::VelocityLag
         command_dropout::CommandDropout
@@ -196,10 +201,9 @@ pub fn rivals(card: &Card) -> Vec<&'static str> {
     card.rivals.iter().copied().chain(others.map(|other| other.id)).collect()
 }
 
-/// Two effects of the same mean that this evidence tells apart: the one whose card says so, and the other.
-pub fn twins(told_by: Evidence) -> Option<(&'static Card, &'static Card)> {
-    let told = |card: &'static Card| Some((card, self::card(card.twin.filter(|t| t.told_by == told_by)?.effect)?));
-    cards().find_map(told)
+/// Pairs of effects of the same mean that this evidence tells apart: the one whose card says so, and the other.
+pub fn twins(told_by: Evidence) -> impl Iterator<Item = (&'static Card, &'static Card)> {
+    cards().filter_map(move |card| Some((card, self::card(card.twin.filter(|t| t.told_by == told_by)?.effect)?)))
 }
 
 #[cfg(test)]

@@ -81,6 +81,7 @@ fn a_lever_arm_corrects_the_log_and_is_no_dynamics() {
     let hidden = [Hidden::sized("imu_lever_arm", 0.02, &vehicle, &mut rng)];
     let Diagnosed { diagnosis, vehicle: extended, .. } = diagnosed(&vehicle, &hidden, 45);
     assert_eq!(named(&diagnosis).iter().map(|f| f.effect).collect::<Vec<_>>(), ["imu_lever_arm"]);
+    let extended = extended.expect("no worse than what was given");
     assert!(extended.effects.is_empty(), "{:?}", extended.effects);
 }
 

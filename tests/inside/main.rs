@@ -27,6 +27,7 @@ mod replay;
 mod resume;
 mod round_trip;
 mod states;
+mod rules;
 #[path = "../support/mod.rs"]
 mod support;
 mod track;

@@ -34,7 +34,8 @@ impl<'a> OutputFiles<'a> {
             tell(&format!("figures in {}", json.write(document.as_bytes())?.display()));
         }
         if let Some(file) = self.vehicle {
-            let written = file.write(encode::toml("the vehicle", &diagnosed.vehicle)?.as_bytes())?;
+            let vehicle = super::extended(diagnosed, "--extend")?;
+            let written = file.write(encode::toml("the vehicle", vehicle)?.as_bytes())?;
             tell(&format!("extended vehicle in {0}: racer train --vehicle {0}", written.display()));
         }
         Ok(())

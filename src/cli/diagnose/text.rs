@@ -17,6 +17,11 @@ pub fn text(d: &Diagnosis) -> String {
         let size = s.structure_rms.max(s.coloured_rms);
         out.push(format!("structure remains in {}: {:.3} {} of {:.3}{along}", s.channel, size, s.unit, s.rms));
     }
+    if !d.small.is_empty() {
+        let small: Vec<String> =
+            d.small.iter().map(|f| format!("{} ({}, {:.3} m/s after a second)", f.name, f.effect, f.impact)).collect();
+        out.push(format!("evident, and too small to matter: {}", small.join(", ")));
+    }
     if !d.drift.is_empty() {
         let rows = d.drift.iter().map(|x| {
             vec![x.parameter.clone(), format!("{:.4}", x.base), interval(x.value, x.low, x.high), x.unit.into()]
@@ -48,8 +53,9 @@ pub fn text(d: &Diagnosis) -> String {
         });
         out.push(columns::table(&["open loop, after", "m/s off", "m off", "deg off", "starts"], rows.collect(), 1..5));
     }
-    if let Some(captured) = d.captured {
-        out.push(format!("{:.0} % of what a better model could gain on that flight was gained", 100.0 * captured));
+    out.extend(captured(d));
+    if let Some(why) = &d.not_extended {
+        out.push(format!("no extended vehicle: {why}"));
     }
     let next: Vec<&str> = d.findings.iter().filter(|f| f.status != Status::Named).map(|f| f.manoeuvre).collect();
     if let Some(next) = next.first() {
@@ -57,6 +63,16 @@ pub fn text(d: &Diagnosis) -> String {
     }
     out.push(not_shown(d));
     out.join("\n\n")
+}
+
+/// What was gained of what could be gained at most.
+fn captured(d: &Diagnosis) -> Option<String> {
+    let captured = d.captured?;
+    Some(if captured > 0.0 {
+        format!("{:.0} % of what a better model could gain on that flight was gained", 100.0 * captured)
+    } else {
+        "nothing of what a better model could gain on that flight was gained".into()
+    })
 }
 
 /// A value and its interval, with as many digits as the interval's width has a meaning for.

@@ -22,6 +22,9 @@ criteria! {
     SHORT_LIST = 6.0, Assumed("a fit is a hundred times as dear as a score");
     /// Effects that are added at most.
     MOST_EFFECTS = 8.0, Assumed("more than any flight has shown");
+    /// Effects of the rates alone that are added at most, so that they leave room for others.
+    MOST_RATE_EFFECTS = 4.0,
+        Assumed("a rate loop has a delay, an order, a limit and an axis of its own; else it takes all places");
     /// Share of its gain that an effect keeps where a number of it ends at the bound of its range.
     BOUNDED_MERIT = 0.5, Assumed(UNRECORDED);
     /// Largest sum of the coefficients of a channel's memory: a constant residual keeps at least what is left to 1 of

@@ -90,7 +90,8 @@ pub fn actuator_response(
         return ActuatorResponse { command: vec![none; n], lag: vec![0.0; n], setpoint: vec![(none, [0.0; 3]); n] };
     };
     let late = extended::command_delays(p);
-    let late = [late[0] + offset, late[2] + offset, late[3]];
+    let imu = model.acting(x, Role::ImuLate);
+    let late = [late[0] + offset + imu, late[2] + offset + imu, late[3] + imu];
     let lost = model.acting(x, Role::CommandsLost);
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let mut arrivals = Arrivals { sent: &record.sent, late, lost, at: [0; 3], command: begin };

@@ -34,7 +34,8 @@ impl Candidate {
 
 /// The numbers of the compact model and of constant sensor errors that the flights tell anything about.
 pub fn base_numbers(problem: &Problem) -> Vec<usize> {
-    let biases = effects::acting(Role::ConstantError).flat_map(span);
+    let errors = [Role::ConstantError, Role::OdometryLate];
+    let biases = errors.into_iter().flat_map(effects::acting).flat_map(span);
     let volts = BEGIN..problem.model.numbers.len();
     let own = effects::cards().flat_map(span).filter(|&k| problem.model.base[k] != 0.0);
     let mut all: Vec<usize> = (0..=DISCHARGE).chain(biases).chain(volts).chain(own).collect();
@@ -81,7 +82,9 @@ pub fn causes(problem: &Problem) -> Vec<&'static Card> {
     let one_clock = problem.records.iter().all(|r| r.one_clock);
     let can_be_tried = |card: &&Card| match card.role {
         // Found in the variance, and in every fit.
-        Role::RandomForce | Role::ConstantError => false,
+        Role::RandomForce | Role::ConstantError | Role::OdometryLate => false,
+        // Told from a delay of all commands afterwards.
+        Role::ImuLate => false,
         Role::ClockFast => !one_clock,
         _ => true,
     };

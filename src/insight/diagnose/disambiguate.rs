@@ -18,7 +18,11 @@ fn at(card: &Card) -> usize {
 /// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two
 /// of the same size.
 pub fn clocks(problem: &Problem, selection: &mut Selection) {
-    let Some((stamped, delayed)) = effects::twins(Evidence::OdometryClock) else { return };
+    effects::twins(Evidence::OdometryClock).for_each(|(stamped, delayed)| clock(problem, selection, stamped, delayed));
+}
+
+/// The same of one pair.
+fn clock(problem: &Problem, selection: &mut Selection, stamped: &'static Card, delayed: &'static Card) {
     let moved = mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>());
     let is_one = |a: &Added| [stamped.id, delayed.id].contains(&a.card.id);
     let Some(i) = selection.added.iter().position(is_one) else { return };
@@ -42,7 +46,7 @@ pub fn clocks(problem: &Problem, selection: &mut Selection) {
 
 /// Lost commands and a short delay have the same mean: what single stick movements leave decides.
 pub fn chance(problem: &Problem, selection: &mut Selection) -> Option<Lost> {
-    let (dropout, delayed) = effects::twins(Evidence::SingleMovements)?;
+    let (dropout, delayed) = effects::twins(Evidence::SingleMovements).next()?;
     let lost = lost_commands(problem, selection);
     let are_lost = lost.matters(dropout);
     let (x, free) = if are_lost {

@@ -4,6 +4,7 @@
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
 use super::numbers::span;
+use crate::base::check::Check;
 use crate::model::effects::{self, MODEL};
 use crate::model::vehicle::Vehicle;
 use crate::model::vehicle::extension::Extension;
@@ -11,7 +12,11 @@ use std::collections::BTreeMap;
 
 /// The base vehicle with every named effect of the simulator. Effects of sensors and of chance are no part of a
 /// vehicle; what a change of the compact model's numbers already holds is not added a second time.
-pub fn vehicle(fitted: &FittedSelection, findings: &[Finding]) -> Vehicle {
+///
+/// # Errors
+///
+/// Where it would be no vehicle: what racer writes, racer reads.
+pub fn vehicle(fitted: &FittedSelection, findings: &[Finding]) -> Result<Vehicle, String> {
     let model = &fitted.problem.model;
     let point = &fitted.selection.point;
     let mut vehicle = model.vehicle_at(&point.x);
@@ -38,5 +43,11 @@ pub fn vehicle(fitted: &FittedSelection, findings: &[Finding]) -> Vehicle {
         vehicle.effects = Extension { source: Some(source), sizes, uncertain, covariance };
     }
     debug_assert!(vehicle.effects.sizes.keys().all(|id| effects::card(id).is_some()));
-    vehicle
+    match vehicle.check() {
+        Ok(()) => Ok(vehicle),
+        Err(invalid) => Err(format!(
+            "these flights do not tell a vehicle that could fly: {} is {}, expected {}",
+            invalid.key, invalid.found, invalid.expected
+        )),
+    }
 }

@@ -184,6 +184,8 @@ pub struct Diagnosis {
     pub usable_s: f64,
     /// By impact.
     pub findings: Vec<Finding>,
+    /// Evident, and too small for anybody to notice.
+    pub small: Vec<Finding>,
     /// What no effect explains.
     pub unexplained: Vec<Structure>,
     /// Effects that these flights could not show.
@@ -200,6 +202,9 @@ pub struct Diagnosis {
     pub horizons: Vec<Ahead>,
     /// Share of what could be gained at most that was gained, on flight that was not used for fitting.
     pub captured: Option<f64>,
+    /// Why there is no extended vehicle, where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub not_extended: Option<String>,
     /// Structure before and after, by channel.
     pub structure_before: Vec<Structure>,
     /// The same after.

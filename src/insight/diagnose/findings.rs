@@ -13,8 +13,8 @@ use super::lost::Lost;
 use super::numbers::span;
 use super::select::Added;
 use super::structure::{PLACE, Structure};
-use crate::insight::criteria::material::MATERIAL_BIAS;
-use crate::model::effects::{self, ResidualChannel, Role};
+use crate::insight::criteria::material::{LEAST_IMPACT, LEAST_SENSOR_IMPACT, MATERIAL_BIAS};
+use crate::model::effects::{self, EffectKind, ResidualChannel, Role};
 
 /// What was found.
 pub struct Judgement {
@@ -22,12 +22,15 @@ pub struct Judgement {
     pub judged: Vec<Judged>,
     pub drift: Vec<Drift>,
     pub unexplained: Vec<Structure>,
+    /// Evident, and too small to matter.
+    pub small: Vec<Finding>,
 }
 
 /// Judges a selection that leaves `structure`, of flights that lose so many commands.
 pub fn find(fitted: &FittedSelection, lost: Option<Lost>, structure: &[Structure]) -> Judgement {
-    let added = fitted.selection.added.iter().map(|a| judge(fitted, a)).filter(|j| j.material);
-    let judged: Vec<Judged> = added.chain(constant_errors(fitted)).collect();
+    let added = fitted.selection.added.iter().map(|a| judge(fitted, a)).chain(constant_errors(fitted));
+    let (judged, small): (Vec<Judged>, Vec<Judged>) = added.partition(matters);
+    let small = small.into_iter().map(|j| j.finding).collect();
     let mut findings: Vec<Finding> = judged.iter().map(|j| j.finding.clone()).collect();
     if let Some(lost) = lost {
         findings.iter_mut().filter(|f| f.has(Role::CommandsLost)).for_each(|f| count(f, &lost));
@@ -40,7 +43,7 @@ pub fn find(fitted: &FittedSelection, lost: Option<Lost>, structure: &[Structure
     let (drift, cause) = drift::find(fitted);
     findings.extend(cause);
     let unexplained = adequacy::unexplained(structure, &findings, fitted.selection);
-    let mut found = Judgement { findings, judged, drift, unexplained };
+    let mut found = Judgement { findings, judged, drift, unexplained, small };
     found.doubt(structure, placed);
     found
 }
@@ -64,6 +67,19 @@ impl Judgement {
             finding.suspect("structure remains in specific force z".into());
         }
     }
+}
+
+/// Whether anybody would notice.
+fn matters(judged: &Judged) -> bool {
+    let finding = &judged.finding;
+    let least = match effects::card(finding.effect).map(|card| card.kind) {
+        // What the voltage does is felt in the thrust long after.
+        Some(EffectKind::Battery) | None => 0.0,
+        Some(EffectKind::Sensor) => LEAST_SENSOR_IMPACT.get(),
+        Some(_) => LEAST_IMPACT.get(),
+    };
+    let constant = finding.has(Role::ConstantError);
+    (judged.material || constant) && (finding.impact >= least || finding.has(Role::CommandsLost))
 }
 
 /// Lost commands, as counted.

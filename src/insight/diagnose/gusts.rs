@@ -1,14 +1,14 @@
 //! Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both
 //! horizontal axes. They have no mean, and show in the variance.
 
-use super::channels::FORCE;
+use super::channels::{FORCE, PUSH};
 use super::finding::{Finding, Value};
 use super::oscillation;
 use super::problem::Problem;
 use super::record::BIN_S;
 use super::select::Selection;
-use crate::base::stats::{NORMAL_95, mean};
-use crate::insight::criteria::chance::{GUST_BALANCED, GUST_LASTING, GUST_MEMORY_S, GUST_STRUCTURE};
+use crate::base::stats::{NORMAL_95, mean, median};
+use crate::insight::criteria::chance::{ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_S, GUST_STRUCTURE};
 use crate::insight::criteria::flown::GUST_ROWS;
 use crate::insight::criteria::material::MATERIAL_GUST;
 use crate::insight::criteria::replicated::AGREEING_STRETCHES;
@@ -19,6 +19,8 @@ use crate::model::effects::{self, Card, Role};
 const CAP: f64 = 6.0;
 /// Lags between which the memory of gusts is looked for, in bins.
 const LAGS: [usize; 2] = [6, 18];
+/// Speed from which drag over speed tells how drag changes, m/s.
+const TOLD_M_S: f64 = 2.0;
 
 /// Gusts, where the forces' residual holds them; `structure_rms` of it is structure, m/s2.
 pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Option<Finding> {
@@ -33,6 +35,7 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
         || !common.lasts()
         || tau < GUST_MEMORY_S.get()
         || structure_rms > GUST_STRUCTURE.get() * sigma
+        || sigma < ESTIMATOR_RATIO.get() * estimated(problem, selection)
     {
         return None;
     }
@@ -49,6 +52,28 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
         impact: sigma * (2.0 * tau.min(1.0) * 1.0).sqrt(),
         ..Finding::of(card)
     })
+}
+
+/// What errors of the logged velocity look like in the forces, m/s2: how much of it the pushes show, which the air has
+/// no part in, times how the predicted drag changes with it.
+fn estimated(problem: &Problem, selection: &Selection) -> f64 {
+    let squares: Vec<f64> = selection.point.residual[PUSH..PUSH + 2].iter().flatten().map(|r| r * r).collect();
+    if squares.is_empty() {
+        return 0.0;
+    }
+    let mut slopes = Vec::new();
+    for axis in 0..2 {
+        for row in &problem.rows[FORCE + axis] {
+            let (f, i) = (row.flight as usize, row.sample as usize);
+            let v = problem.records[f].velocity[axis][i];
+            if v.abs() > TOLD_M_S {
+                // Drag goes with the square: its slope is twice its ratio.
+                slopes.push(2.0 * (selection.point.state[f].force[i][axis] / v).abs());
+            }
+        }
+    }
+    let slope = if slopes.is_empty() { 0.0 } else { median(&slopes) };
+    slope * mean(&squares).sqrt()
 }
 
 /// Time between the two lags, s.

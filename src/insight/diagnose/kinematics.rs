@@ -18,18 +18,20 @@ pub fn integrate(model: &Model, record: &FlightRecord, x: &[f64], command: &[[f6
     let k = model.sensors(x);
     // A gyro that is late was not what the odometry's clock was to be moved to.
     let late = model.acting(x, Role::GyroLate);
-    let offset = if late == 0.0 { 0.0 } else { late - record.moved };
+    let moved = if late == 0.0 { 0.0 } else { record.moved };
+    let offset = late - moved;
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let tau = model.acting(x, Role::VelocityLag);
-    let gyro = shifted(record, offset);
+    let odometry = model.acting(x, Role::OdometryLate);
+    let gyro = shifted(record, 0, offset - odometry);
+    let force = shifted(record, 3, -moved - odometry);
     let fine = &record.fine;
     let slope = slopes(&fine.time, &gyro);
     let mut corrected: Vec<[f64; 6]> = Vec::with_capacity(gyro.len());
     for i in 0..gyro.len() {
         let throttle = extended::throttle(command[i / fine.every][3]);
         let throttle = if throttle.is_finite() { throttle } else { 0.0 };
-        let force = [fine.imu[3][i], fine.imu[4][i], fine.imu[5][i]];
-        corrected.push(truth(k, [gyro[i], force], slope[i], throttle));
+        corrected.push(truth(k, [gyro[i], force[i]], slope[i], throttle));
     }
     let lagged = if tau > 0.0 { Some(missing(record, &corrected, tau)) } else { None };
     for &[from, to] in &record.windows {
@@ -78,12 +80,12 @@ fn truth(k: &[f64], measured: [[f64; 3]; 2], acceleration: [f64; 3], throttle: f
     [rates[0], rates[1], rates[2], force[0], force[1], force[2]]
 }
 
-/// The measured rates as they were when their late samples say they are.
+/// Three measured values from the `from`th on, as they were when samples that are `offset` seconds late say they are.
 #[inline(always)]
-fn shifted(record: &FlightRecord, offset: f64) -> Vec<[f64; 3]> {
+fn shifted(record: &FlightRecord, from: usize, offset: f64) -> Vec<[f64; 3]> {
     let n = record.fine.time.len();
     if offset == 0.0 {
-        return (0..n).map(|i| std::array::from_fn(|k| record.fine.imu[k][i])).collect();
+        return (0..n).map(|i| std::array::from_fn(|k| record.fine.imu[from + k][i])).collect();
     }
     let at = |t: f64, k: usize, near: usize| {
         let mut i = near.min(n - 2);
@@ -96,7 +98,7 @@ fn shifted(record: &FlightRecord, offset: f64) -> Vec<[f64; 3]> {
         let share = ((t - record.fine.time[i]) / (record.fine.time[i + 1] - record.fine.time[i])).clamp(0.0, 1.0);
         record.fine.imu[k][i] + share * (record.fine.imu[k][i + 1] - record.fine.imu[k][i])
     };
-    (0..n).map(|i| std::array::from_fn(|k| at(record.fine.time[i] + offset, k, i))).collect()
+    (0..n).map(|i| std::array::from_fn(|k| at(record.fine.time[i] + offset, from + k, i))).collect()
 }
 
 /// Specific forces `force` of the IMU's samples, turned into the world and through a first-order lag of `tau` seconds;

@@ -1,6 +1,6 @@
 //! The model of the flights at any values of its numbers: the vehicle with every effect.
 
-use super::numbers::{BEGIN, DISCHARGE, DRAG, EFFECTS, LOG_AT, MAX_RATE, ModelNumber, Numbers, TAU, THRUST, span};
+use super::numbers::{DISCHARGE, DRAG, EFFECTS, FORMS, LOG_AT, MAX_RATE, ModelNumber, Numbers, TAU, THRUST, span};
 use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::extended::Extended;
 use crate::model::dynamics::{Factors, Parameters, drag};
@@ -46,7 +46,7 @@ impl Model {
 
     /// The parameters of sensors and chance at `x`.
     pub fn sensors<'a>(&self, x: &'a [f64]) -> &'a [f64] {
-        &x[LOG_AT..BEGIN]
+        &x[LOG_AT..FORMS]
     }
 
     /// The first parameters, at `x`, of the effects that act on a log in this way; 0 where there is none.

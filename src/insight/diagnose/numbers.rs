@@ -1,18 +1,20 @@
 //! The numbers that a diagnosis may move: those of the compact model, of every effect, and the voltage each flight
 //! begins with.
 
+use super::forms::{self, RESPONSE, TAP_S, TAPS_S};
 use crate::insight::criteria::believed::{
     SHORTEST_SHAPE, TRUST_DISCHARGE, TRUST_DRAG, TRUST_EFFECT, TRUST_RATE, TRUST_THRUST, TRUST_TIME_CONSTANT,
     TRUST_VOLTAGE,
 };
 use crate::insight::estimate::range::{DRAG_1_M, RATE_GAIN, TIME_CONSTANT_S};
 use crate::model::dynamics::drag;
-use crate::model::effects::{self, COUNT, Card, CompactNumber, LOG_COUNT, Quantities, Quantity};
+use crate::model::effects::{self, COUNT, Card, CompactNumber, FormOf, LOG_COUNT, Quantities, Quantity};
 use crate::model::vehicle::Vehicle;
 use std::ops::Range;
 
 /// Order of the numbers: time constants (s), maximum rates (rad/s), c0..c5 (m/s2), drag per axis (1/m), discharge
-/// (V/s), then all effects of the simulator, all others, and the voltage at the beginning of each flight (V).
+/// (V/s), then all effects of the simulator, all others, what bends them, and the voltage at the beginning
+/// of each flight (V).
 pub const TAU: Range<usize> = 0..4;
 pub const MAX_RATE: Range<usize> = 4..7;
 pub const THRUST: Range<usize> = 7..13;
@@ -20,7 +22,8 @@ pub const DRAG: Range<usize> = 13..16;
 pub const DISCHARGE: usize = 16;
 pub const EFFECTS: usize = 17;
 pub const LOG_AT: usize = EFFECTS + COUNT;
-pub const BEGIN: usize = LOG_AT + LOG_COUNT;
+pub const FORMS: usize = LOG_AT + LOG_COUNT;
+pub const BEGIN: usize = FORMS + forms::COUNT;
 
 /// One number.
 #[derive(Clone, Debug)]
@@ -81,6 +84,7 @@ impl Numbers {
         out.response(vehicle);
         out.forces(vehicle);
         out.effects(vehicle);
+        out.forms();
         for (flight, volts) in begin_v.iter().enumerate() {
             let extent = Extent { bounds: [0.0, 1e3], step: 1e-2, trust: TRUST_VOLTAGE.get() };
             out.add(format!("begin_v.{flight}"), "V", *volts, extent, &[Quantity::Voltage]);
@@ -130,6 +134,25 @@ impl Numbers {
         }
         let extent = Extent { bounds: [-1.0, 1.0], step: 1e-5, trust: TRUST_DISCHARGE.get() };
         self.add("battery.rate_v_s".into(), "V/s", vehicle.battery.rate_v_s, extent, &[Quantity::Voltage]);
+    }
+
+    /// What bends causes: nothing, in the base.
+    fn forms(&mut self) {
+        for i in 0..RESPONSE {
+            let name = format!("response.{}.{}", ["roll", "pitch", "yaw"][i / TAPS_S.len()], i % TAPS_S.len());
+            let extent = Extent { bounds: [-0.1, 0.1], step: 0.1 * TAP_S, trust: 10.0 * TAP_S };
+            self.add(name, "s", 0.0, extent, &[Quantity::Gyro]);
+        }
+        for (card, form) in forms::all() {
+            let writes = match form.of {
+                FormOf::Force(_) => Quantity::SpecificForce,
+                FormOf::Voltage(_) => Quantity::Voltage,
+            };
+            let size = form.typical;
+            let extent =
+                Extent { bounds: [-1e3 * size, 1e3 * size], step: 0.05 * size, trust: TRUST_EFFECT.get() * size };
+            self.add(format!("{}.{}", card.id, form.name), form.unit, 0.0, extent, &[writes]);
+        }
     }
 
     /// All effects, those of the simulator at the vehicle's own sizes.

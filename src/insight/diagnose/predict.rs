@@ -1,7 +1,9 @@
 //! What the model says the sensors of a flight should have read: the same stages as the simulator's, driven by the log.
 
 use super::actuator_response::{ActuatorResponse, actuator_response, body_rates, supplied};
+use super::bends;
 use super::channels::{CHANNELS, TURN, VOLTAGE};
+use super::forms::TAPS_S;
 use super::kinematics::{self, lagged, slopes};
 use super::model::Model;
 use super::numbers::BEGIN;
@@ -12,7 +14,7 @@ use crate::flight::series::period;
 use crate::model::attitude::dot;
 use crate::model::dynamics::battery::discharged;
 use crate::model::dynamics::extended::{self, Extended, ForceInputs};
-use crate::model::effects::{self, Card, Quantities, Quantity, Role, Sensed};
+use crate::model::effects::{self, AerodynamicForces, Card, FormOf, Quantities, Quantity, Role, Sensed};
 use std::sync::Arc;
 
 /// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
@@ -85,11 +87,12 @@ impl Predicted {
             };
         }
         if dirty.has(Quantity::Voltage) {
-            self.discharge(&p, record, x[BEGIN + flight]);
+            self.discharge(&p, record, x[BEGIN + flight], &bends::bends(x));
             self.channels[VOLTAGE] = record.volts.iter().map(|(i, _)| self.modelled_v[*i]).collect::<Vec<_>>().into();
         }
         if dirty.has(Quantity::SpecificForce) {
-            self.push(&p, record, model.acting(x, Role::VelocityLag), model.vehicle().gravity_m_s2);
+            let lag = [model.acting(x, Role::VelocityLag), model.vehicle().gravity_m_s2];
+            self.push(&p, record, lag, &bends::bends(x));
         }
         if dirty.any(&[Quantity::Gyro, Quantity::Accelerometer]) {
             self.sense(&p, dirty, model, record, x);
@@ -103,7 +106,7 @@ impl Predicted {
 
     /// Modelled voltage, and that with its slow error taken off, which thrust sees.
     #[inline(always)]
-    fn discharge(&mut self, p: &Extended<f64>, record: &FlightRecord, begin_v: f64) {
+    fn discharge(&mut self, p: &Extended<f64>, record: &FlightRecord, begin_v: f64, bends: &[(f64, FormOf)]) {
         let n = record.time.len();
         if record.volts.is_empty() {
             (self.modelled_v, self.voltage) = (vec![0.0; n].into(), vec![0.0; n].into());
@@ -118,7 +121,7 @@ impl Predicted {
             let command = if self.command[i][3].is_finite() { self.command[i][3] } else { -1.0 };
             let (v, next) = extended::terminal(p, open, command, polarisation, (t - before).max(0.0));
             (polarisation, before) = (next, t.max(since));
-            modelled.push(v);
+            modelled.push(v + bent_voltage(p, bends, open, command));
         }
         let mut error: Vec<f64> = record.voltage.iter().zip(&modelled).map(|(m, v)| m - v).collect();
         if let Some(filter) = LowPass::new(VOLTAGE_HZ, period(&record.time)) {
@@ -128,9 +131,9 @@ impl Predicted {
         self.modelled_v = modelled.into();
     }
 
-    /// Specific force. A velocity that lags by `tau` is taken as what it will be.
+    /// Specific force, bent. A velocity that lags by `tau` is taken as what it will be.
     #[inline(always)]
-    fn push(&mut self, p: &Extended<f64>, record: &FlightRecord, tau: f64, gravity: f64) {
+    fn push(&mut self, p: &Extended<f64>, record: &FlightRecord, [tau, gravity]: [f64; 2], bends: &[(f64, FormOf)]) {
         let since = record.since();
         let mut out = Vec::with_capacity(record.time.len());
         let force = |i: usize| -> [f64; 3] { build!(|k| record.fine.imu[3 + k][i]) };
@@ -154,7 +157,8 @@ impl Predicted {
                 rate_error: self.lag[i],
                 elapsed: record.time[i] - since,
             };
-            out.push(extended::force(p, &inputs));
+            let force = extended::force(p, &inputs);
+            out.push(if bends.is_empty() { force } else { bent_force(bends, &inputs, force) });
         }
         self.force = out.into();
     }
@@ -172,6 +176,7 @@ impl Predicted {
         let known =
             |c: usize| if c < 3 { record.commanded[0] } else { record.commanded[1] && (record.moves || c == 5) };
         let wanted = |c: usize| known(c) && dirty.has(if c < 3 { Quantity::Gyro } else { Quantity::Accelerometer });
+        let bent = bends::taps(x).map(|taps| self.bent_rates(record, &taps));
         let mut means: [Vec<f64>; 6] = Default::default();
         for &[from, to] in &record.bins {
             let mut sum = [0.0; 6];
@@ -183,6 +188,7 @@ impl Predicted {
                 for j in 0..3 {
                     // The gyro's own lateness, on top of what the sensor makes of it.
                     sum[j] += sensed.rates[j] - rates[j] + self.seen_rates[i][j];
+                    sum[j] += bent.as_ref().map_or(0.0, |bent| bent[i][j]);
                     sum[3 + j] += sensed.force[j];
                 }
             }
@@ -193,6 +199,17 @@ impl Predicted {
                 self.channels[c] = mean.into();
             }
         }
+    }
+
+    /// What the response has beside a lag and a delay: the rates' changes of a moment ago, by `taps`.
+    fn bent_rates(&self, record: &FlightRecord, taps: &[[f64; TAPS_S.len()]; 3]) -> Vec<[f64; 3]> {
+        let slope = slopes(&record.time, &self.seen_rates);
+        let before = TAPS_S.map(|tap| (tap / period(&record.time)).round() as usize);
+        let known = |i: usize, k: usize| if slope[i][k].is_finite() { slope[i][k] } else { 0.0 };
+        let bent = |i: usize, k: usize| {
+            (0..TAPS_S.len()).map(|j| taps[k][j] * known(i.saturating_sub(before[j]), k)).sum::<f64>()
+        };
+        (0..slope.len()).map(|i| std::array::from_fn(|k| bent(i, k))).collect()
     }
 
     /// Angular acceleration, rad/s2: what the response does at each moment, for it is over in a few samples.
@@ -212,4 +229,38 @@ impl Predicted {
         }
         out
     }
+}
+
+/// What bends add to the voltage, V.
+#[inline(always)]
+fn bent_voltage(p: &Extended<f64>, bends: &[(f64, FormOf)], open: f64, command: f64) -> f64 {
+    let (throttle, charge) = (extended::throttle(command), (open - p.empty_v) / (p.full_v - p.empty_v));
+    let one = |(size, of): &(f64, FormOf)| match of {
+        FormOf::Voltage(of) => size * of(throttle * throttle, charge),
+        FormOf::Force(_) => 0.0,
+    };
+    bends.iter().map(one).sum()
+}
+
+/// The specific force with what bends add to it, m/s2.
+#[inline(always)]
+fn bent_force(bends: &[(f64, FormOf)], at: &ForceInputs<f64>, force: [f64; 3]) -> [f64; 3] {
+    let all = AerodynamicForces {
+        throttle: extended::throttle(at.command),
+        velocity: at.velocity,
+        rates: at.rates,
+        height: at.height,
+        rate_error: at.rate_error,
+        elapsed: at.elapsed,
+        specific_thrust: force[2],
+        force,
+    };
+    let mut out = force;
+    for (size, of) in bends {
+        if let FormOf::Force(of) = of {
+            let added = of(&all);
+            (0..3).for_each(|k| out[k] += size * added[k]);
+        }
+    }
+    out
 }

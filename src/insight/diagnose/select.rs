@@ -1,5 +1,7 @@
 //! Which effects explain the residuals: rank by score, refit the best and their rivals, keep the best, and again.
 
+use super::bend::bend;
+use super::bends::is_form;
 use super::candidates::{Candidate, base_numbers, candidates, causes, renewed};
 use super::fit::{self, FitPoint};
 use super::numbers::span;
@@ -9,10 +11,10 @@ use super::size::is_material;
 use super::trial::{Trial, tied, try_best};
 use super::whiten::Whitener;
 use crate::insight::criteria::consistent::CLOCK_SKEW_SEEN;
-use crate::insight::criteria::evident::{LEAST_GAIN, MOST_EFFECTS, NUISANCE_GAIN};
+use crate::insight::criteria::evident::{LEAST_GAIN, MOST_EFFECTS, MOST_RATE_EFFECTS, NUISANCE_GAIN};
 use crate::insight::criteria::rival::RIVAL_KEEPS;
 use crate::insight::estimate::gram::Grams;
-use crate::model::effects::{Card, are_rivals};
+use crate::model::effects::{Card, ResidualChannel, are_rivals};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -30,15 +32,19 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// The same without the effects `ids`, fitted again.
+    /// The same without the effects `ids` and without anything bent, fitted again.
     pub fn without(&self, problem: &Problem, ids: &[&str]) -> Self {
         let gone = |a: &Added| ids.contains(&a.card.id);
-        let dropped: Vec<usize> = self.added.iter().filter(|a| gone(a)).flat_map(|a| span(a.card)).collect();
+        let effects = self.added.iter().filter(|a| gone(a)).flat_map(|a| span(a.card));
+        // What only bends a cause is no part of a vehicle.
+        let forms = self.point.free.iter().copied().filter(|k| is_form(*k));
+        let dropped: Vec<usize> = effects.chain(forms).collect();
         let mut x = self.point.x.clone();
         dropped.iter().for_each(|&k| x[k] = 0.0);
         let free: Vec<usize> = self.point.free.iter().copied().filter(|k| !dropped.contains(k)).collect();
+        let point = if dropped.is_empty() { self.point.clone() } else { fit::fit(problem, &self.whitener, &x, &free) };
         Self {
-            point: fit::fit(problem, &self.whitener, &x, &free),
+            point,
             whitener: self.whitener.clone(),
             added: self.added.iter().filter(|a| !gone(a)).cloned().collect(),
             base: self.base.clone(),
@@ -144,7 +150,11 @@ impl<'a> Search<'a> {
     /// Adds the best of the first of the ranking, if it is worth it.
     fn add(&mut self, order: &[(usize, f64, f64)]) -> bool {
         let problem = self.problem;
-        let mut trials = try_best(problem, &self.whitener, &self.point, &self.found, order);
+        let of_rates = |card: &Card| card.channels.iter().all(|c| *c == ResidualChannel::Rate);
+        let full = self.added.iter().filter(|a| of_rates(a.card)).count() >= MOST_RATE_EFFECTS.count();
+        let open = |s: &&(usize, f64, f64)| !(full && of_rates(self.found[s.0].card()));
+        let order: Vec<_> = order.iter().filter(open).copied().collect();
+        let mut trials = try_best(problem, &self.whitener, &self.point, &self.found, &order);
         // Beside a rival that is already there, it would only take that one's place.
         let held = self.held();
         trials.retain(|t| !(t.bounded(problem) && held.iter().any(|h| are_rivals(h, t.card))));
@@ -152,7 +162,8 @@ impl<'a> Search<'a> {
         let near = trials.iter().filter(|t| t.card.id != best.card.id && tied(best, t));
         self.pending = near.map(|t| (t.card, t.gain)).collect();
         self.added.push(Added { card: best.card, ties: Vec::new() });
-        self.point = fit::fit(problem, &self.whitener, &best.point.x, &best.point.free);
+        let point = fit::fit(problem, &self.whitener, &best.point.x, &best.point.free);
+        self.point = bend(problem, &self.whitener, point, &self.held());
         true
     }
 }

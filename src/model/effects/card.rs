@@ -1,5 +1,6 @@
 //! What an effect tells of itself. Who simulates, fits, judges or reports effects asks the card, and names none.
 
+use super::form::Form;
 use super::quantity::Quantity;
 
 /// What a person and the diagnosis have to know about an effect. Fill what differs from [`Card::BLANK`].
@@ -16,6 +17,10 @@ pub struct Card {
     pub parameters: &'static [EffectParameter],
     /// Which parameter is no size but a form, such as a time constant: it means nothing where the size is 0.
     pub shape: Option<usize>,
+    /// Identifiers of the effects that it is the whole of, each at its own size.
+    pub parts: &'static [&'static str],
+    /// What its equation leaves where nature has the same cause in another form.
+    pub forms: &'static [Form],
     /// What its equation changes, and what it takes from what other numbers make.
     pub writes: &'static [Quantity],
     pub reads: &'static [Quantity],
@@ -54,6 +59,8 @@ impl Card {
         kind: EffectKind::Thrust,
         parameters: &[],
         shape: None,
+        parts: &[],
+        forms: &[],
         writes: &[],
         reads: &[],
         channels: &[],
@@ -135,6 +142,10 @@ pub enum Role {
     ConstantError,
     /// The gyro's samples are stamped so much late, s.
     GyroLate,
+    /// Gyro and accelerometer are both stamped so much late, s, and the odometry was moved to them.
+    ImuLate,
+    /// The odometry is stamped so much late, s: every fit allows for it.
+    OdometryLate,
     /// The sensors' clock runs fast by this share.
     ClockFast,
     /// The velocity went through a first-order lag, s.

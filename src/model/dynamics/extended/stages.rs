@@ -25,8 +25,9 @@ pub fn command_delays<R: Real>(p: &Extended<R>) -> [R; 4] {
     let mut delay = CommandDelay { rates: R::zero(), yaw: R::zero(), thrust: R::zero() };
     effects::command_delay(&p.values, &mut delay);
     // No command comes before it was sent, or later than the line is long.
-    let yaw = (delay.rates + delay.yaw).clamp(R::zero(), R::of(LATEST_S));
-    [delay.rates, delay.rates, yaw, delay.thrust]
+    let within = |delay: R| delay.clamp(R::zero(), R::of(LATEST_S));
+    let rates = within(delay.rates);
+    [rates, rates, within(delay.rates + delay.yaw), within(delay.thrust)]
 }
 
 /// The filtered commands and their slope `h` seconds later, while the commands that arrive are `sent`, at terminal

@@ -24,7 +24,8 @@ pub fn gain(d: &Diagnosis) -> Markup {
             }
         }
         @if let Some(captured) = d.captured {
-            p { (format!("{:.0} % of what a better model could gain on that flight was gained.", 100.0 * captured)) }
+            @let percent = 100.0 * captured.max(0.0);
+            p { (format!("{percent:.0} % of what a better model could gain on that flight was gained.")) }
         }
     }
 }

@@ -1,0 +1,23 @@
+//! Does it hold on flight that was not used for fitting, and for the sensors by themselves?
+
+use super::criteria;
+
+criteria! {
+    "Does it hold elsewhere?";
+
+    /// Standard deviations (over stretches of time) by which an effect has to lower the whitened squares of unseen
+    /// flight.
+    PAYS_DEVIATIONS = 2.0, Theory("one in forty by chance; four stretches that agree");
+    /// Standard deviations by which unseen flight has to be predicted worse in a channel to be worse.
+    WORSE_DEVIATIONS = 2.5, Theory("one in 160 by chance, of seven channels");
+    /// Rise of a channel's error on unseen flight, as a share, that is worse.
+    WORSE_SHARE = 0.01, Assumed("a hundredth of the error is worth no word");
+    /// Share of a sensor's error that attitude and velocity have to show by themselves.
+    KINEMATIC_SHARE = 0.5, Assumed("kinematics do not depend on the model of the vehicle; half allows for their noise");
+    /// Standard deviations by which they have to show less.
+    KINEMATIC_DEVIATIONS = 2.0, Theory("one in forty by chance");
+    /// Two effects cancel from this likeness on, of the opposite sign.
+    CANCEL_LIKENESS = 0.9, Theory("there a fifth of the information on either is its own");
+    /// Share of the larger one's whitened squares that both together may leave to cancel.
+    CANCEL_LEFT = 0.25, Theory("half of its size");
+}

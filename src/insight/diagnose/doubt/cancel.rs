@@ -1,0 +1,43 @@
+//! Two effects whose parts are opposite over the log and sum to little.
+
+use crate::insight::criteria::unseen::{CANCEL_LEFT, CANCEL_LIKENESS};
+use crate::insight::diagnose::fitted::FittedSelection;
+use crate::insight::diagnose::numbers::span;
+use crate::insight::diagnose::problem::ChannelValues;
+use crate::insight::estimate::gram::Grams;
+use crate::model::effects::Card;
+use nalgebra::DMatrix;
+
+/// Pairs among `cards` that cancel each other.
+pub fn pairs(fitted: &FittedSelection, cards: &[&'static Card]) -> Vec<[usize; 2]> {
+    let (problem, point) = (fitted.problem, fitted.point());
+    let part = |card: &&'static Card| {
+        let none: Vec<(usize, f64)> = span(card).map(|k| (k, 0.0)).collect();
+        fitted.selection.whitener.apply(&problem.secant(&point.state, &point.x, &none, -1.0), &problem.rows)
+    };
+    let parts: Vec<ChannelValues> = cards.iter().map(part).collect();
+    let gram = Grams::new(&parts.iter().collect::<Vec<_>>(), &problem.rows, problem.blocks).sum;
+    let n = cards.len();
+    let all = (0..n).flat_map(|a| (0..a).map(move |b| [b, a]));
+    all.filter(|[a, b]| cancel(&gram, *a, *b)).collect()
+}
+
+fn cancel(gram: &DMatrix<f64>, a: usize, b: usize) -> bool {
+    let (aa, bb, ab) = (gram[(a, a)], gram[(b, b)], gram[(a, b)]);
+    let left = aa + bb + 2.0 * ab;
+    ab < -CANCEL_LIKENESS.get() * (aa * bb).sqrt() && left < CANCEL_LEFT.get() * aa.max(bb)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opposite_parts_of_one_size_cancel_and_others_do_not() {
+        let gram = |aa: f64, bb: f64, ab: f64| DMatrix::from_row_slice(2, 2, &[aa, ab, ab, bb]);
+        assert!(cancel(&gram(1.0, 1.1, -1.0), 0, 1));
+        assert!(!cancel(&gram(1.0, 1.1, 1.0), 0, 1), "one sign");
+        assert!(!cancel(&gram(1.0, 16.0, -3.9), 0, 1), "one is much larger");
+        assert!(!cancel(&gram(1.0, 1.0, -0.5), 0, 1), "each has its own");
+    }
+}

@@ -1,0 +1,117 @@
+//! Never worse: whether the extended model predicts unseen flight worse, in any channel, than the vehicle that was
+//! given or the compact model fitted to the same flights; and which effect does it.
+
+use super::channels::{CHANNELS, FORCE, NAMES, TURN, VOLTAGE};
+use super::fit::FitPoint;
+use super::fitted::FittedSelection;
+use super::numbers::DISCHARGE;
+use super::problem::{ChannelValues, Problem};
+use super::unseen::{deviations, parts, removed, seen, without};
+use crate::insight::criteria::unseen::{WORSE_DEVIATIONS, WORSE_SHARE};
+use crate::insight::estimate::gram::Grams;
+use crate::model::effects::{Card, MODEL};
+
+/// A channel that is predicted worse on unseen flight.
+pub struct Worse {
+    pub channel: &'static str,
+    /// Share by which its error rises.
+    pub by: f64,
+    /// The effect without which it rises least, if any is to blame.
+    pub blamed: Option<&'static Card>,
+}
+
+/// Squares of the residuals of each channel, by stretch of time, on unseen flight.
+type Squares = Vec<Vec<f64>>;
+
+fn zeros(problem: &Problem) -> Squares {
+    vec![vec![0.0; problem.blocks]; CHANNELS]
+}
+
+/// Adds what `residual` has in stretches that are `out`.
+fn add(problem: &Problem, sums: &mut Squares, residual: &ChannelValues, out: &[bool]) {
+    for c in 0..CHANNELS {
+        for (row, r) in problem.rows[c].iter().zip(&residual[c]) {
+            let block = row.block as usize;
+            if out[block] {
+                sums[c][block] += r * r;
+            }
+        }
+    }
+}
+
+/// By which share the error rises from `before` to `after`, where it does beyond chance.
+fn rise(before: &[f64], after: &[f64]) -> Option<f64> {
+    let differences: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
+    let [before, after] = [before, after].map(|x| x.iter().sum::<f64>());
+    let by = (after / before.max(1e-300)).sqrt() - 1.0;
+    (by > WORSE_SHARE.get() && deviations(&differences) > WORSE_DEVIATIONS.get()).then_some(by)
+}
+
+/// The channel that the extended model of `fitted` predicts worst, if it predicts any worse than `base`, the compact
+/// model fitted, or than the vehicle that was given.
+pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
+    let problem = fitted.problem;
+    let white = fitted.selection.whitener.apply(&base.residual, &problem.rows);
+    let columns: Vec<&ChannelValues> = base.white.iter().chain([&white]).collect();
+    let grams = Grams::new(&columns, &problem.rows, problem.blocks);
+    let (mut extended, mut compact, mut given) = (zeros(problem), zeros(problem), zeros(problem));
+    for out in parts(problem) {
+        let tried = |sums: &mut Squares, x: &[f64]| {
+            let residual = problem.residuals(&problem.predict(x));
+            add(problem, sums, &residual, &out);
+        };
+        tried(&mut extended, &without(problem, fitted.point(), &fitted.grams, &out));
+        let fitted_base = without(problem, base, &grams, &out);
+        tried(&mut compact, &fitted_base);
+        // Errors of the sensors and the voltage at the beginning are the flight's, not the vehicle's.
+        let mut as_given = fitted_base;
+        as_given[..=DISCHARGE].copy_from_slice(&problem.model.base[..=DISCHARGE]);
+        tried(&mut given, &as_given);
+    }
+    // What a vehicle predicts: the kinematics are the sensors' own.
+    let channels = (0..TURN).chain([VOLTAGE]).filter(|&c| c < FORCE + 3 || c == VOLTAGE);
+    let rises = channels.filter_map(|c| {
+        let against = [&compact[c], &given[c]].into_iter().filter_map(|before| rise(before, &extended[c]));
+        Some((c, against.max_by(f64::total_cmp)?))
+    });
+    let (c, by) = rises.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Worse { channel: NAMES[c].0, by, blamed: blamed(fitted, c) })
+}
+
+/// The effect of the simulator without which channel `c` has the least error on unseen flight, less than with it.
+fn blamed(fitted: &FittedSelection, c: usize) -> Option<&'static Card> {
+    let problem = fitted.problem;
+    let total = |x: &[f64], out: &[bool]| {
+        let mut sums = zeros(problem);
+        add(problem, &mut sums, &problem.residuals(&problem.predict(x)), out);
+        sums[c].iter().sum::<f64>()
+    };
+    let cards: Vec<&'static Card> = MODEL.into_iter().filter(|card| !fitted.places(card).is_empty()).collect();
+    let mut saved = vec![0.0; cards.len()];
+    for out in parts(problem) {
+        let x = without(problem, fitted.point(), &fitted.grams, &out);
+        let gram = seen(&fitted.grams, &out);
+        let with = total(&x, &out);
+        for (card, saved) in cards.iter().zip(&mut saved) {
+            let [_, moved] = removed(fitted, &gram, &fitted.places(card), &x);
+            *saved += with - total(&moved, &out);
+        }
+    }
+    let best = cards.into_iter().zip(saved).max_by(|a, b| a.1.total_cmp(&b.1));
+    best.filter(|(_, saved)| *saved > 0.0).map(|(card, _)| card)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn worse_is_what_rises_everywhere_and_not_what_rises_once() {
+        let before = [1.0; 20];
+        assert!(rise(&before, &[1.1; 20]).is_some_and(|by| (by - 0.0488).abs() < 1e-3));
+        let mut once = before;
+        once[3] = 4.0;
+        assert!(rise(&before, &once).is_none());
+        assert!(rise(&before, &[1.01; 20]).is_none(), "half a percent of the error is nothing");
+    }
+}

@@ -1,0 +1,50 @@
+//! Rules that a finding obeys, each with a log that broke it before.
+
+use crate::truth::Vehicle;
+use crate::truth::effects::Hidden;
+use crate::truth::hidden::{Setting, Style, fly};
+use racer::flight::Log;
+use racer::insight::diagnose::diagnose;
+use racer::insight::diagnose::finding::{Diagnosis, Finding, Status};
+use racer::insight::quality::check;
+use rand::SeedableRng;
+use rand::rngs::StdRng;
+
+const SETTING: Setting = Setting { seed: 61, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
+
+fn flown(vehicle: &Vehicle, effects: &[(&str, f64)]) -> Log {
+    let mut rng = StdRng::seed_from_u64(61);
+    let hidden: Vec<Hidden> = effects.iter().map(|(id, size)| Hidden::sized(id, *size, vehicle, &mut rng)).collect();
+    fly(vehicle, &hidden, &SETTING)
+}
+
+fn said(vehicle: &Vehicle, log: &Log) -> Diagnosis {
+    diagnose(vec![check(log)], &vehicle.in_racer(), &mut |_, _| ()).diagnosis
+}
+
+/// The only name, with its delay.
+fn only(diagnosis: &Diagnosis) -> (&'static str, f64) {
+    let named: Vec<&Finding> = diagnosis.findings.iter().filter(|f| f.status != Status::Suspected).collect();
+    let names: Vec<&str> = named.iter().map(|f| f.effect).collect();
+    assert_eq!(named.len(), 1, "{names:?}");
+    (named[0].effect, named[0].parameters["delay"].value)
+}
+
+/// Rule 2: one cause where one will do. It was a late gyro and a late thrust.
+#[test]
+fn a_whole_imu_that_is_late_is_one_cause() {
+    let vehicle = Vehicle::draw(61);
+    let mut log = flown(&vehicle, &[]);
+    log.imu.time_s.iter_mut().for_each(|t| *t += 0.008);
+    let (name, delay) = only(&said(&vehicle, &log));
+    assert!(name == "imu_late" && (delay - 0.008).abs() < 5e-4, "{name} of {delay} s");
+}
+
+/// Rule 2: a link that is late is one cause. It was a delay of the rates and one of the thrust.
+#[test]
+fn commands_that_are_late_together_are_one_cause() {
+    let vehicle = Vehicle::draw(62);
+    let log = flown(&vehicle, &[("rate_delay", 0.012), ("thrust_delay", 0.012)]);
+    let (name, delay) = only(&said(&vehicle, &log));
+    assert!(name == "link_delay" && (delay - 0.012).abs() < 5e-4, "{name} of {delay} s");
+}
