@@ -7,7 +7,6 @@
 
 mod card;
 mod dependence;
-mod form;
 mod quantity;
 mod stages;
 mod values;
@@ -15,7 +14,6 @@ mod values;
 use crate::base::lane::Real;
 pub use card::{Card, CompactNumber, EffectKind, EffectParameter, Evidence, RateResponse, ResidualChannel, Role, Twin};
 pub use dependence::Quantities;
-pub use form::{Form, FormOf};
 pub use quantity::Quantity;
 pub use stages::{
     Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, RelativeWind, Sensed, Setpoint, ThrustInput,

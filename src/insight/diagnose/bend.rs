@@ -1,26 +1,26 @@
-//! First bend, then add: what is left beside a cause is explained by its own family of forms before another cause is
-//! looked for.
+//! First bend, then add: what is left beside a delay or an order of the rates is explained by the form of their response
+//! before another cause is looked for.
 
-use super::bends;
+use super::bends::responds;
 use super::fit::{self, FitPoint};
+use super::numbers::{BEGIN, FORMS};
 use super::problem::Problem;
 use super::whiten::Whitener;
 use crate::insight::criteria::evident::LEAST_GAIN;
 use crate::model::effects::Card;
 
-/// `point` with the forms of `held` that are evident.
-pub fn bend(problem: &Problem, whitener: &Whitener, mut point: FitPoint, held: &[&'static Card]) -> FitPoint {
-    for group in bends::groups(held) {
-        let open: Vec<usize> = group.into_iter().filter(|k| !point.free.contains(k)).collect();
-        if open.is_empty() {
-            continue;
-        }
-        let x = point.x.clone();
-        let bent = fit::refit(problem, whitener, &point, &open, &x);
-        // Each number takes one of the whitened squares by chance.
-        if point.total() - bent.total() > LEAST_GAIN.get() + open.len() as f64 {
-            point = fit::fit(problem, whitener, &bent.x, &bent.free);
-        }
+/// `point` with the response bent, where one of `held` is about it and the bend is evident.
+pub fn bend(problem: &Problem, whitener: &Whitener, point: FitPoint, held: &[&'static Card]) -> FitPoint {
+    let open: Vec<usize> = (FORMS..BEGIN).filter(|k| !point.free.contains(k)).collect();
+    if open.is_empty() || !held.iter().any(|card| responds(card)) {
+        return point;
     }
-    point
+    let x = point.x.clone();
+    let bent = fit::refit(problem, whitener, &point, &open, &x);
+    // Each number takes one of the whitened squares by chance.
+    if point.total() - bent.total() > LEAST_GAIN.get() + open.len() as f64 {
+        fit::fit(problem, whitener, &bent.x, &bent.free)
+    } else {
+        point
+    }
 }

@@ -1,14 +1,14 @@
 //! The numbers that a diagnosis may move: those of the compact model, of every effect, and the voltage each flight
 //! begins with.
 
-use super::forms::{self, RESPONSE, TAP_S, TAPS_S};
+use super::forms::{self, TAP_S, TAPS_S};
 use crate::insight::criteria::believed::{
     SHORTEST_SHAPE, TRUST_DISCHARGE, TRUST_DRAG, TRUST_EFFECT, TRUST_RATE, TRUST_THRUST, TRUST_TIME_CONSTANT,
     TRUST_VOLTAGE,
 };
 use crate::insight::estimate::range::{DRAG_1_M, RATE_GAIN, TIME_CONSTANT_S};
 use crate::model::dynamics::drag;
-use crate::model::effects::{self, COUNT, Card, CompactNumber, FormOf, LOG_COUNT, Quantities, Quantity};
+use crate::model::effects::{self, COUNT, Card, CompactNumber, LOG_COUNT, Quantities, Quantity};
 use crate::model::vehicle::Vehicle;
 use std::ops::Range;
 
@@ -136,22 +136,12 @@ impl Numbers {
         self.add("battery.rate_v_s".into(), "V/s", vehicle.battery.rate_v_s, extent, &[Quantity::Voltage]);
     }
 
-    /// What bends causes: nothing, in the base.
+    /// What bends the response: nothing, in the base.
     fn forms(&mut self) {
-        for i in 0..RESPONSE {
+        for i in 0..forms::COUNT {
             let name = format!("response.{}.{}", ["roll", "pitch", "yaw"][i / TAPS_S.len()], i % TAPS_S.len());
             let extent = Extent { bounds: [-0.1, 0.1], step: 0.1 * TAP_S, trust: 10.0 * TAP_S };
             self.add(name, "s", 0.0, extent, &[Quantity::Gyro]);
-        }
-        for (card, form) in forms::all() {
-            let writes = match form.of {
-                FormOf::Force(_) => Quantity::SpecificForce,
-                FormOf::Voltage(_) => Quantity::Voltage,
-            };
-            let size = form.typical;
-            let extent =
-                Extent { bounds: [-1e3 * size, 1e3 * size], step: 0.05 * size, trust: TRUST_EFFECT.get() * size };
-            self.add(format!("{}.{}", card.id, form.name), form.unit, 0.0, extent, &[writes]);
         }
     }
 

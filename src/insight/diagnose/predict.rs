@@ -14,7 +14,7 @@ use crate::flight::series::period;
 use crate::model::attitude::dot;
 use crate::model::dynamics::battery::discharged;
 use crate::model::dynamics::extended::{self, Extended, ForceInputs};
-use crate::model::effects::{self, AerodynamicForces, Card, FormOf, Quantities, Quantity, Role, Sensed};
+use crate::model::effects::{self, Card, Quantities, Quantity, Role, Sensed};
 use std::sync::Arc;
 
 /// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
@@ -87,12 +87,12 @@ impl Predicted {
             };
         }
         if dirty.has(Quantity::Voltage) {
-            self.discharge(&p, record, x[BEGIN + flight], &bends::bends(x));
+            self.discharge(&p, record, x[BEGIN + flight]);
             self.channels[VOLTAGE] = record.volts.iter().map(|(i, _)| self.modelled_v[*i]).collect::<Vec<_>>().into();
         }
         if dirty.has(Quantity::SpecificForce) {
             let lag = [model.acting(x, Role::VelocityLag), model.vehicle().gravity_m_s2];
-            self.push(&p, record, lag, &bends::bends(x));
+            self.push(&p, record, lag);
         }
         if dirty.any(&[Quantity::Gyro, Quantity::Accelerometer]) {
             self.sense(&p, dirty, model, record, x);
@@ -106,7 +106,7 @@ impl Predicted {
 
     /// Modelled voltage, and that with its slow error taken off, which thrust sees.
     #[inline(always)]
-    fn discharge(&mut self, p: &Extended<f64>, record: &FlightRecord, begin_v: f64, bends: &[(f64, FormOf)]) {
+    fn discharge(&mut self, p: &Extended<f64>, record: &FlightRecord, begin_v: f64) {
         let n = record.time.len();
         if record.volts.is_empty() {
             (self.modelled_v, self.voltage) = (vec![0.0; n].into(), vec![0.0; n].into());
@@ -121,7 +121,7 @@ impl Predicted {
             let command = if self.command[i][3].is_finite() { self.command[i][3] } else { -1.0 };
             let (v, next) = extended::terminal(p, open, command, polarisation, (t - before).max(0.0));
             (polarisation, before) = (next, t.max(since));
-            modelled.push(v + bent_voltage(p, bends, open, command));
+            modelled.push(v);
         }
         let mut error: Vec<f64> = record.voltage.iter().zip(&modelled).map(|(m, v)| m - v).collect();
         if let Some(filter) = LowPass::new(VOLTAGE_HZ, period(&record.time)) {
@@ -131,9 +131,9 @@ impl Predicted {
         self.modelled_v = modelled.into();
     }
 
-    /// Specific force, bent. A velocity that lags by `tau` is taken as what it will be.
+    /// Specific force. A velocity that lags by `tau` is taken as what it will be.
     #[inline(always)]
-    fn push(&mut self, p: &Extended<f64>, record: &FlightRecord, [tau, gravity]: [f64; 2], bends: &[(f64, FormOf)]) {
+    fn push(&mut self, p: &Extended<f64>, record: &FlightRecord, [tau, gravity]: [f64; 2]) {
         let since = record.since();
         let mut out = Vec::with_capacity(record.time.len());
         let force = |i: usize| -> [f64; 3] { build!(|k| record.fine.imu[3 + k][i]) };
@@ -157,8 +157,7 @@ impl Predicted {
                 rate_error: self.lag[i],
                 elapsed: record.time[i] - since,
             };
-            let force = extended::force(p, &inputs);
-            out.push(if bends.is_empty() { force } else { bent_force(bends, &inputs, force) });
+            out.push(extended::force(p, &inputs));
         }
         self.force = out.into();
     }
@@ -229,38 +228,4 @@ impl Predicted {
         }
         out
     }
-}
-
-/// What bends add to the voltage, V.
-#[inline(always)]
-fn bent_voltage(p: &Extended<f64>, bends: &[(f64, FormOf)], open: f64, command: f64) -> f64 {
-    let (throttle, charge) = (extended::throttle(command), (open - p.empty_v) / (p.full_v - p.empty_v));
-    let one = |(size, of): &(f64, FormOf)| match of {
-        FormOf::Voltage(of) => size * of(throttle * throttle, charge),
-        FormOf::Force(_) => 0.0,
-    };
-    bends.iter().map(one).sum()
-}
-
-/// The specific force with what bends add to it, m/s2.
-#[inline(always)]
-fn bent_force(bends: &[(f64, FormOf)], at: &ForceInputs<f64>, force: [f64; 3]) -> [f64; 3] {
-    let all = AerodynamicForces {
-        throttle: extended::throttle(at.command),
-        velocity: at.velocity,
-        rates: at.rates,
-        height: at.height,
-        rate_error: at.rate_error,
-        elapsed: at.elapsed,
-        specific_thrust: force[2],
-        force,
-    };
-    let mut out = force;
-    for (size, of) in bends {
-        if let FormOf::Force(of) = of {
-            let added = of(&all);
-            (0..3).for_each(|k| out[k] += size * added[k]);
-        }
-    }
-    out
 }

@@ -1,7 +1,7 @@
 //! Thrust lost to air that comes from above: the rotors' angle of attack falls with v_z (momentum and blade-element
 //! theory).
 
-use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Form, Quantity, ResidualChannel};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct AxialInflow;
@@ -13,15 +13,6 @@ impl Effect for AxialInflow {
         sentence: "in a climb the rotors push less, in a descent more, the faster they turn",
         kind: EffectKind::Thrust,
         parameters: &[EffectParameter { name: "k", unit: "1/s", low: 0.0, high: 4.0, typical: [0.1, 1.7] }],
-        forms: &[
-            Form::force("whatever the throttle", "1/s", 0.1, |f| [0.0, 0.0, -f.velocity[2]]),
-            Form::force("with the root of the thrust", "1/s", 0.1, |f| {
-                [0.0, 0.0, -f.velocity[2] * (f.specific_thrust.max(0.0) / 9.80665).sqrt()]
-            }),
-            Form::force("across the rotors as well", "1/m", 0.005, |f| {
-                [0.0, 0.0, -f.velocity[2] * f.velocity[0].hypot(f.velocity[1])]
-            }),
-        ],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::ThrustCommand, Quantity::Velocity],
         channels: &[ResidualChannel::Force],

@@ -1,6 +1,5 @@
 //! What an effect tells of itself. Who simulates, fits, judges or reports effects asks the card, and names none.
 
-use super::form::Form;
 use super::quantity::Quantity;
 
 /// What a person and the diagnosis have to know about an effect. Fill what differs from [`Card::BLANK`].
@@ -19,8 +18,6 @@ pub struct Card {
     pub shape: Option<usize>,
     /// Identifiers of the effects that it is the whole of, each at its own size.
     pub parts: &'static [&'static str],
-    /// What its equation leaves where nature has the same cause in another form.
-    pub forms: &'static [Form],
     /// What its equation changes, and what it takes from what other numbers make.
     pub writes: &'static [Quantity],
     pub reads: &'static [Quantity],
@@ -60,7 +57,6 @@ impl Card {
         parameters: &[],
         shape: None,
         parts: &[],
-        forms: &[],
         writes: &[],
         reads: &[],
         channels: &[],

@@ -1,6 +1,6 @@
 //! Drag that differs between forward and backward: f_x -= k v_x^2.
 
-use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Form, Quantity, ResidualChannel};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct DragAsymmetry;
@@ -12,10 +12,6 @@ impl Effect for DragAsymmetry {
         sentence: "at the same lean the vehicle is faster in one direction than in the other",
         kind: EffectKind::Drag,
         parameters: &[EffectParameter { name: "k", unit: "1/m", low: -0.02, high: 0.02, typical: [0.001, 0.008] }],
-        forms: &[
-            Form::force("along x, either way", "1/m", 0.002, |f| [-f.velocity[0] * f.velocity[0].abs(), 0.0, 0.0]),
-            Form::force("along y, either way", "1/m", 0.002, |f| [0.0, -f.velocity[1] * f.velocity[1].abs(), 0.0]),
-        ],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],

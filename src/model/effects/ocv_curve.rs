@@ -1,7 +1,7 @@
 //! Open-circuit voltage as an S over the charge instead of a line: V += k P3(2 c - 1), P3 the third
 //! Legendre polynomial.
 
-use super::{BatteryLoad, Card, Effect, EffectKind, EffectParameter, Form, Quantity, ResidualChannel};
+use super::{BatteryLoad, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct OcvCurve;
@@ -13,7 +13,6 @@ impl Effect for OcvCurve {
         sentence: "the voltage falls fast at first, then hardly, then fast again at the end of the pack",
         kind: EffectKind::Battery,
         parameters: &[EffectParameter { name: "k", unit: "V", low: -2.0, high: 2.0, typical: [0.2, 0.8] }],
-        forms: &[Form::voltage("bent once", 0.1, |_, charge| charge * (1.0 - charge))],
         writes: &[Quantity::Voltage],
         channels: &[ResidualChannel::Voltage],
         signature: "the voltage without load leaves the line as a cubic over the pack",

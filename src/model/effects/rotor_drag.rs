@@ -1,6 +1,6 @@
 //! Drag of the turning rotors: f_xy -= k s v_xy (blade flapping and induced drag).
 
-use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Form, Quantity, ResidualChannel};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct RotorDrag;
@@ -12,7 +12,6 @@ impl Effect for RotorDrag {
         sentence: "the vehicle slows down even at low speed, more with more throttle",
         kind: EffectKind::Drag,
         parameters: &[EffectParameter { name: "k", unit: "1/s", low: 0.0, high: 1.5, typical: [0.05, 0.5] }],
-        forms: &[Form::force("whatever the throttle", "1/s", 0.05, |f| [-f.velocity[0], -f.velocity[1], 0.0])],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::ThrustCommand, Quantity::Velocity],
         channels: &[ResidualChannel::Force],

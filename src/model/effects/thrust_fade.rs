@@ -1,7 +1,6 @@
 //! Thrust that fades over a flight as the motors warm: f_T is scaled by 1 - k t / 300 s.
 
-use super::{AerodynamicForces, Card, CompactNumber, Effect, EffectKind, EffectParameter};
-use super::{Form, Quantity, ResidualChannel};
+use super::{AerodynamicForces, Card, CompactNumber, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct ThrustFade;
@@ -16,9 +15,6 @@ impl Effect for ThrustFade {
         sentence: "the same throttle lifts less at the end of a flight, whatever the voltage",
         kind: EffectKind::Thrust,
         parameters: &[EffectParameter { name: "k", unit: "1", low: 0.0, high: 0.25, typical: [0.02, 0.08] }],
-        forms: &[Form::force("faster and faster", "1/s2", 1e-6, |f| {
-            [0.0, 0.0, -f.specific_thrust * f.elapsed * f.elapsed]
-        })],
         writes: &[Quantity::SpecificForce],
         channels: &[ResidualChannel::Force],
         absorbed_by: &[CompactNumber::Thrust],

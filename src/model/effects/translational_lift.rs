@@ -1,6 +1,6 @@
 //! Thrust gained from fresh wind: f_T += k v_h^2 (momentum theory).
 
-use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Form, Quantity, ResidualChannel};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct TranslationalLift;
@@ -12,10 +12,6 @@ impl Effect for TranslationalLift {
         sentence: "in fast level flight the vehicle carries itself on less throttle",
         kind: EffectKind::Thrust,
         parameters: &[EffectParameter { name: "k", unit: "1/m", low: 0.0, high: 0.08, typical: [0.003, 0.03] }],
-        forms: &[
-            Form::force("with the speed", "1/s", 0.02, |f| [0.0, 0.0, f.velocity[0].hypot(f.velocity[1])]),
-            Form::force("along x alone", "1/m", 0.003, |f| [0.0, 0.0, f.velocity[0] * f.velocity[0]]),
-        ],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],

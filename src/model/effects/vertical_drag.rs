@@ -1,6 +1,6 @@
 //! Drag along the thrust in proportion to the speed: f_z -= k v_z.
 
-use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Form, Quantity, ResidualChannel};
+use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct VerticalDrag;
@@ -12,10 +12,6 @@ impl Effect for VerticalDrag {
         sentence: "climbs and descents are braked, whatever the throttle",
         kind: EffectKind::Drag,
         parameters: &[EffectParameter { name: "k", unit: "1/s", low: 0.0, high: 0.9, typical: [0.05, 0.3] }],
-        forms: &[
-            Form::force("with the square", "1/m", 0.005, |f| [0.0, 0.0, -f.velocity[2] * f.velocity[2].abs()]),
-            Form::force("with the throttle", "1/s", 0.1, |f| [0.0, 0.0, -f.velocity[2] * f.throttle]),
-        ],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],

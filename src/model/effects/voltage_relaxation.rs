@@ -1,6 +1,6 @@
 //! Voltage lost to slow polarisation: V1' = (v s^2 - V1) / tau.
 
-use super::{BatteryLoad, Card, Effect, EffectKind, EffectParameter, Form, Quantity, ResidualChannel};
+use super::{BatteryLoad, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct VoltageRelaxation;
@@ -16,7 +16,6 @@ impl Effect for VoltageRelaxation {
             EffectParameter { name: "tau", unit: "s", low: 0.0, high: 90.0, typical: [1.0, 30.0] },
         ],
         shape: Some(1),
-        forms: &[Form::voltage("at once", 0.4, |load, _| -load)],
         writes: &[Quantity::Voltage],
         reads: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Voltage],

@@ -1,6 +1,6 @@
 //! Voltage lost to the battery's inner resistance at once: V = V_oc - v s^2, v at full throttle.
 
-use super::{BatteryLoad, Card, Effect, EffectKind, EffectParameter, Form, Quantity, ResidualChannel};
+use super::{BatteryLoad, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct VoltageSag;
@@ -12,7 +12,6 @@ impl Effect for VoltageSag {
         sentence: "the voltage drops the moment the throttle opens and is back when it closes",
         kind: EffectKind::Battery,
         parameters: &[EffectParameter { name: "v_full", unit: "V", low: 0.0, high: 8.0, typical: [0.8, 3.0] }],
-        forms: &[Form::voltage("with the power of 1.5", 0.4, |load, _| -load.max(0.0).powf(1.5))],
         writes: &[Quantity::Voltage],
         reads: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Voltage],
