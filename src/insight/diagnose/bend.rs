@@ -1,5 +1,5 @@
-//! First bend, then add: what is left beside a delay or an order of the rates is explained by the form of their response
-//! before another cause is looked for.
+//! First bend, then add: what is left beside a delay or an order of the rates is explained by the form of their
+//! response before another cause is looked for.
 
 use super::bends::responds;
 use super::fit::{self, FitPoint};
