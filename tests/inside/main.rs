@@ -26,8 +26,8 @@ mod reference;
 mod replay;
 mod resume;
 mod round_trip;
-mod states;
 mod rules;
+mod states;
 #[path = "../support/mod.rs"]
 mod support;
 mod track;
