@@ -14,6 +14,7 @@ mod import;
 mod interrupt;
 mod logs;
 mod pilot;
+mod predict;
 mod progress;
 mod replay;
 mod report;
@@ -51,6 +52,7 @@ enum Command {
     Import(import::Args),
     Check(check::Args),
     Identify(identify::Args),
+    Predict(predict::Args),
     Diagnose(diagnose::Args),
     Extend(extend::Args),
     Study(study::Args),
@@ -112,6 +114,7 @@ pub fn main() -> ExitCode {
         Command::Track(args) => track::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Identify(args) => identify::run(&args),
+        Command::Predict(args) => predict::run(&args),
         Command::Diagnose(args) => diagnose::run(&args),
         Command::Extend(args) => extend::run(&args),
         Command::Import(args) => import::run(&args),

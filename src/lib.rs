@@ -55,7 +55,7 @@ mod api;
 pub mod cli;
 
 pub use api::flight::{fly_pilot, fly_policy};
-pub use api::insight::{diagnose, identify};
+pub use api::insight::{diagnose, identify, predict};
 pub use api::policy::{Policy, evaluate};
 pub use api::training::{Progress, Trained, train, train_into};
 pub use base::check::BadInput;
@@ -86,6 +86,7 @@ pub mod track {
 /// The parts of a vehicle.
 pub mod vehicle {
     pub use crate::model::vehicle::extension::Extension;
+    pub use crate::model::vehicle::identified::{Origin, RotorChain, SensorOffsets, ThrustSource};
     pub use crate::model::vehicle::{Battery, Drag, Identified, LogSpan, MaxRates, TimeConstants};
 }
 
@@ -103,7 +104,17 @@ pub mod log {
 
 /// The parts of an identification.
 pub mod identification {
-    pub use crate::insight::identify::result::{BatteryEstimate, ComparedChannel, DragEstimate, Response};
+    pub use crate::insight::identify::fits::Kept;
+    pub use crate::insight::identify::result::{
+        BatteryEstimate, ComparedChannel, DragEstimate, Response, ThrustEstimate,
+    };
+}
+
+/// The parts of a prediction.
+pub mod prediction {
+    pub use crate::insight::diagnose::horizon::Horizon;
+    pub use crate::insight::predict::{PredictedChannel, Prediction};
+    pub use crate::insight::prepare::data::DataPart;
 }
 
 /// The parts of a diagnosis.

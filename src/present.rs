@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod colour;
 pub mod export;
+pub mod predict;
 pub mod replay;
 pub mod report;
 pub mod retrain;

@@ -10,6 +10,7 @@ use crate::insight::identify::estimate::Estimate;
 use crate::insight::identify::result::Identification;
 use crate::insight::identify::{AXES, FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ, identify, refuse};
 use crate::model::vehicle::Vehicle;
+use crate::model::vehicle::identified::ThrustSource;
 use crate::present::report;
 use std::path::PathBuf;
 
@@ -38,6 +39,13 @@ pub struct Args {
     /// Go on where a log contradicts itself, such as a rate that goes against its setpoint
     #[arg(long)]
     despite_problems: bool,
+    /// Write a vehicle even where the logs tell no rates or no thrust: the base vehicle lends them
+    #[arg(long)]
+    partial: bool,
+    /// New file for the vehicle that the figures are of: fitted on the first 70 % of the flight alone. `racer predict
+    /// --part validation` makes the same figures of it
+    #[arg(long, value_name = "V.toml")]
+    validated: Option<PathBuf>,
     /// Vehicle that lends what the logs cannot tell: a name or a file
     #[arg(long, value_name = "NAME|FILE", default_value = "seed_class")]
     base: String,
@@ -61,7 +69,11 @@ pub struct Args {
 const HELP: &str =
     "The log is checked first; what is wrong with it, and what is done about that, is printed. Fly about five \
 minutes: sharp steps on every stick, the whole throttle range, fast passes in every direction, climbs and descents. \
-`racer fly --pilot` shows such a flight.
+`racer fly --pilot` shows such a flight. Give --mass and --full-rates where the log does not say them: forces and \
+rates are theirs.
+
+A number that does not predict the last 30 % of the flight is left to the base vehicle. Where that is all of the \
+rates, or the thrust, no file is written, with exit code 2, unless --partial is given.
 
 Exit code 3 means that a log is damaged and that its readable part was used.
 
@@ -84,6 +96,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let options = options(args)?;
     let reserve = |path: &Option<PathBuf>| path.as_deref().map(Reserved::new).transpose();
     let (out, json, page) = (Reserved::new(&args.out)?, reserve(&args.json)?, reserve(&args.report)?);
+    let validated = reserve(&args.validated)?;
     let bar = progress::bar();
     let checked = logs::read(&args.logs, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
     if !args.despite_problems {
@@ -96,9 +109,10 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     bar.finish_and_clear();
     let stem = args.out.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     found.vehicle.name = args.name.clone().unwrap_or(stem);
+    found.validated.name = format!("{}, training part", found.vehicle.name);
 
     super::print(&text(&found))?;
-    refuse::nothing(&found)?;
+    refuse::nothing(&found, args.partial)?;
     let documents = checked.iter().map(|quality| CheckedLog {
         name: &quality.log.name,
         streams: &quality.streams,
@@ -113,6 +127,10 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         let document = encode::json("the identification", &IdentificationDocument::new(&found, documents))?;
         tell(&format!("figures in {}", json.write(document.as_bytes())?.display()));
     }
+    if let Some(validated) = validated {
+        let written = validated.write(encode::toml("the vehicle", &found.validated)?.as_bytes())?;
+        tell(&format!("the vehicle that the figures are of in {}", written.display()));
+    }
     let written = out.write(encode::toml("the vehicle", &found.vehicle)?.as_bytes())?;
     tell(&format!("vehicle in {0}: racer train --vehicle {0}", written.display()));
     Ok(if logs::damaged(&checked) { CommandEnd::Damaged } else { CommandEnd::Done })
@@ -125,6 +143,7 @@ fn options(args: &Args) -> Result<IdentifyOptions, BadInput> {
         max_rate_rad_s: args.full_rates.map(|rates| rates.map(f64::to_radians)),
         rate_cutoff_hz: args.rate_cutoff,
         force_cutoff_hz: args.force_cutoff,
+        partial: args.partial,
     };
     options.check().map_err(|invalid| BadInput::at("command line", invalid))?;
     Ok(options)
@@ -157,21 +176,47 @@ fn text(found: &Identification) -> String {
     let assumed = if assumed.is_empty() { assumed } else { format!("\n\ntaken from the vehicle {base}{assumed}") };
     let remarks: String = found.remarks.iter().map(|remark| format!("\n  {remark}")).collect();
     let remarks = if remarks.is_empty() { remarks } else { format!("\n\nremarks{remarks}") };
-    let flown = found.flown.map_or(String::new(), |[low, high]| {
-        let ratio = found.vehicle.thrust_to_weight();
-        let beyond = if high < 0.9 { ", extrapolated" } else { "" };
-        format!(
-            "\n\nthrust command flown from {low:.2} to {high:.2} (-1 to 1); full thrust is {ratio:.1} times the \
-             weight{beyond}"
-        )
-    });
+    let flown = thrust(found).map_or(String::new(), |text| format!("\n\n{text}"));
     format!("validated on the last 30 % of the flight\n\n{response}\n\n{values}{flown}{assumed}{remarks}")
+}
+
+/// The thrust in numbers that people know.
+fn thrust(found: &Identification) -> Option<String> {
+    let words = &found.thrust;
+    let (hover, [low, high]) = (words.hover_throttle?, words.flown_throttle?);
+    let small = words.full_n.value.is_some_and(|newtons| newtons < 10.0);
+    let full = estimate(&words.full_n, if small { 3 } else { 1 });
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let mut text = format!(
+        "hovers at {} throttle; full throttle {full} N, {:.1} times the weight; flown from {} to {} throttle",
+        percent(hover),
+        found.vehicle.thrust_to_weight(),
+        percent(low),
+        percent(high)
+    );
+    if high < 0.9 {
+        text += &format!("; beyond {} not flown, the curve is carried on", percent(high));
+    }
+    text += &format!("\nthrust from the {}", words.source.name());
+    if words.source == ThrustSource::Command {
+        text += ", which a flight controller's mixer moves: motor outputs in the log tell more";
+    }
+    if let (Some(command), Some(r2)) = (words.command_lag_s, words.command_r2) {
+        let rotors = estimate(&words.rotor_lag_s.times(1e3), 1);
+        text += &format!(
+            ": motor outputs follow the command in {:.1} ms (R2 {r2:.2}), rotors follow them in {rotors} ms",
+            1e3 * command
+        );
+    }
+    Some(text)
 }
 
 /// Value and interval, or why there is none.
 fn estimate(estimate: &Estimate, digits: usize) -> String {
     match (estimate.value, estimate.interval(), &estimate.why) {
         (Some(value), Some([low, high]), _) => format!("{value:.digits$} ({low:.digits$} to {high:.digits$})"),
+        // Longer reasons stand below the table.
+        (Some(value), None, Some(why)) if why.chars().count() > 50 => format!("{value:.digits$} (not kept, see below)"),
         (Some(value), None, Some(why)) => format!("{value:.digits$} ({why})"),
         (Some(value), ..) => format!("{value:.digits$}"),
         (None, _, _) => "-".into(),

@@ -10,6 +10,7 @@ pub mod consistent;
 pub mod drifted;
 pub mod evident;
 pub mod flown;
+pub mod identified;
 pub mod material;
 pub mod replicated;
 pub mod rival;
@@ -68,6 +69,7 @@ pub fn all() -> impl Iterator<Item = &'static Criterion> {
         usable::ALL,
         consistent::ALL,
         flown::ALL,
+        identified::ALL,
         believed::ALL,
         evident::ALL,
         replicated::ALL,

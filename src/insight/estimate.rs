@@ -3,6 +3,7 @@
 
 pub mod autoregression;
 pub mod gram;
+pub mod halfspace;
 pub mod inverse;
 pub mod jackknife;
 pub mod least_squares;

@@ -7,20 +7,26 @@ pub mod battery;
 pub mod bias;
 pub mod document;
 pub mod estimate;
+mod fill;
+pub mod fits;
 pub mod force;
+pub mod inputs;
+pub mod judge;
+pub mod mixer;
 pub mod rates;
 pub mod refuse;
-mod report;
 pub mod result;
 pub mod solve;
+pub mod thrust;
 
 use crate::base::check::{Check, Invalid};
 use crate::base::stats::quantile;
 use crate::insight::Watch;
-use crate::insight::prepare::data::Data;
+use crate::insight::predict::{PredictOptions, predict};
+use crate::insight::prepare::data::{Data, DataPart};
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
-use rayon::prelude::*;
+use fits::Fits;
 use result::Identification;
 
 /// Usual cut-offs: above what a vehicle's rates can follow, and below where the rotors shake the accelerometer.
@@ -40,13 +46,15 @@ pub struct IdentifyOptions {
     pub rate_cutoff_hz: f64,
     /// The same for specific force.
     pub force_cutoff_hz: f64,
+    /// Whether a vehicle of which rates or thrust could not be told at all is better than none.
+    pub partial: bool,
 }
 
 impl IdentifyOptions {
     /// The base vehicle lends what the logs cannot tell; everything else as usual.
     pub fn new(base: Vehicle) -> Self {
         let (rate_cutoff_hz, force_cutoff_hz) = (RATE_CUTOFF_HZ, FORCE_CUTOFF_HZ);
-        Self { base, mass_kg: None, max_rate_rad_s: None, rate_cutoff_hz, force_cutoff_hz }
+        Self { base, mass_kg: None, max_rate_rad_s: None, rate_cutoff_hz, force_cutoff_hz, partial: false }
     }
 }
 
@@ -64,17 +72,34 @@ pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 pub fn identify(logs: Vec<Quality>, options: &IdentifyOptions, watch: Watch) -> Identification {
     let data = Data::new(logs);
     let mut out = Identification::new(&data, options);
-    watch("roll, pitch and yaw response", 0.0);
-    let fitted: Vec<_> = (0..3).into_par_iter().map(|axis| report::rates::fit(&data, axis, options)).collect();
-    for (axis, fitted) in fitted.into_iter().enumerate() {
-        report::rates::keep(fitted, axis, &mut out);
+    let start = out.vehicle.clone();
+    let full_rate = out.full_rate_rad_s;
+    let mut drag = true;
+    loop {
+        watch("the first part of the flight", if drag { 0.0 } else { 0.5 });
+        let train = Fits::new(&data, DataPart::Train, &start, options, drag);
+        watch("all of the flight", if drag { 0.25 } else { 0.7 });
+        let all = Fits::new(&data, DataPart::All, &start, options, drag);
+        watch("validation", if drag { 0.45 } else { 0.9 });
+        out.validated = train.vehicle(&data, DataPart::Train, &start, &train.everything(), full_rate);
+        let predicted = [DataPart::Train, DataPart::Validation].map(|part| {
+            let (rate_cutoff_hz, force_cutoff_hz) = (options.rate_cutoff_hz, options.force_cutoff_hz);
+            predict(&data, &[&out.validated], &PredictOptions { part, rate_cutoff_hz, force_cutoff_hz })
+        });
+        let whole = all.vehicle(&data, DataPart::All, &start, &all.everything(), full_rate);
+        let highest = all.thrust.as_ref().map_or(1.0, |fit| fit.flown[1].min(1.0));
+        let [full, flown] = [1.0, highest].map(|u| fill::thrust_of(&all, &whole, u));
+        let judged = judge::judge(&all, &predicted[1], &flown);
+        if drag && all.everything().drag && !judged.kept.drag && judged.kept.thrust {
+            // The thrust beside a drag that is not the vehicle's would be another thrust.
+            drag = false;
+            continue;
+        }
+        out.vehicle = all.vehicle(&data, DataPart::All, &start, &judged.kept, full_rate);
+        fill::fill(&mut out, &data, &all, &predicted, judged, full, options);
+        watch("done", 1.0);
+        return out;
     }
-    watch("battery", 0.45);
-    report::battery::report(&data, &mut out);
-    watch("thrust and drag", 0.5);
-    report::force::report(&data, options, &mut out);
-    watch("done", 1.0);
-    out
 }
 
 /// 99 % of the speed in flight, m/s; none without velocity.

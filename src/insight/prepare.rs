@@ -3,4 +3,6 @@
 pub mod attitude;
 pub mod data;
 pub mod flight;
+pub mod lag;
+pub mod rotors;
 pub mod windows;

@@ -1,5 +1,7 @@
 //! Collective thrust over filtered command and battery voltage (paper Eq. 7).
 
+pub mod shape;
+
 use crate::base::lane::Real;
 
 /// c0 + c1 u + c2 u^2 + c3 u^3 + c4 V + c5 u V; newtons, or m/s2 where the coefficients are divided by the mass.

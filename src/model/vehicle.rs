@@ -1,14 +1,15 @@
 //! The vehicle: the parameters of the compact model, as identified from its flights (paper section 4.1).
 
 pub mod extension;
+pub mod identified;
 pub mod randomize;
 
 use crate::base::check::{BadInput, Check, Invalid};
 use crate::base::document::Library;
 use crate::model::thrust::specific_thrust;
 use extension::Extension;
+pub use identified::{Identified, LogSpan};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// How far the thrust may fall as the command grows, as a share of full thrust.
 const THRUST_DIP: f64 = 0.01;
@@ -50,35 +51,6 @@ pub struct Vehicle {
     /// Where the numbers come from, if from flights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub identified: Option<Identified>,
-}
-
-/// The origin of an identified vehicle. Nothing here changes how it flies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Identified {
-    /// Version of racer that identified it.
-    pub racer: String,
-    /// The vehicle that lent what the flights could not tell.
-    pub base: String,
-    /// Rate setpoints that a command of 1 stands for: roll, pitch, yaw, deg/s. A policy's command times these is what
-    /// the flight controller is to be sent.
-    pub full_rate_deg_s: [f64; 3],
-    /// The flights.
-    pub logs: Vec<LogSpan>,
-    /// Keys of this file that the base vehicle lent, and why.
-    pub assumed: BTreeMap<String, String>,
-    /// 95 % confidence intervals by key; drag as deceleration over speed squared, 1/m.
-    pub interval: BTreeMap<String, [f64; 2]>,
-}
-
-/// A flight, and from when to when it was used.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LogSpan {
-    /// Name of the log.
-    pub name: String,
-    /// s since the start of the log.
-    pub span_s: [f64; 2],
 }
 
 /// First-order response of each command (Eq. 6), s.
@@ -163,7 +135,7 @@ impl Vehicle {
     }
 
     /// Thrust at the filtered command `u` and `v` volts, N.
-    fn thrust_at(&self, u: f64, v: f64) -> f64 {
+    pub fn thrust_at(&self, u: f64, v: f64) -> f64 {
         specific_thrust(&self.thrust_n, u, v)
     }
 
@@ -179,17 +151,23 @@ impl Vehicle {
         low
     }
 
-    /// Thrust must grow with the command and be able to lift the vehicle.
+    /// Thrust must grow with the command, from nothing or more, and be able to lift the vehicle. Whatever keeps the
+    /// [`limits`](crate::model::thrust::shape::limits) passes.
     pub fn check_thrust(&self) -> Result<(), Invalid> {
         let finite = self.thrust_n.iter().all(|c| c.is_finite());
         let found = format!("{:?}", self.thrust_n);
         Invalid::unless(finite, "thrust_n", &found, "six finite numbers", "")?;
         for v in [self.battery.empty_v, self.battery.full_v] {
             // Command in hundredths, from none to full. A cubic may dip a little where the rotors idle.
+            let dip = THRUST_DIP * self.thrust_at(1.0, v).abs();
+            let idle = self.thrust_at(-1.0, v);
+            let found = format!("{idle:.2} N at command -1 and {v:.1} V");
+            let advice = "rotors do not pull down; check c0..c5";
+            Invalid::unless(idle >= -dip, "thrust_n", found, "a thrust of zero or more", advice)?;
             let mut most = f64::NEG_INFINITY;
             for u in (-100..=100).map(|u| f64::from(u) / 100.0) {
                 let thrust = self.thrust_at(u, v);
-                if thrust < most - THRUST_DIP * self.thrust_at(1.0, v).abs() {
+                if thrust < most - dip {
                     let found = format!("a thrust that falls at command {u} and {v:.1} V");
                     let advice = "check the order and signs of c0..c5";
                     return Err(Invalid::new("thrust_n", found, "a thrust that grows with the command", advice));

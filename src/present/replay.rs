@@ -9,6 +9,7 @@ mod log;
 pub mod mcap;
 mod schema;
 mod simulated;
+pub mod timed;
 
 pub use layout::layout;
 pub use log::recorded;

@@ -2,6 +2,7 @@
 
 mod blackbox;
 mod cards;
+mod chain;
 mod config;
 mod corpus;
 mod dependence;
@@ -37,3 +38,4 @@ mod truth;
 mod truth_hidden;
 mod truth_other;
 mod truth_physics;
+mod written;

@@ -22,13 +22,7 @@ struct Judged {
 }
 
 fn options() -> IdentifyOptions {
-    IdentifyOptions {
-        base: Vehicle::load("seed_class").unwrap(),
-        mass_kg: None,
-        max_rate_rad_s: None,
-        rate_cutoff_hz: 100.0,
-        force_cutoff_hz: 30.0,
-    }
+    IdentifyOptions::new(Vehicle::load("seed_class").unwrap())
 }
 
 fn fly_and_identify(seed: u64) -> (truth::Vehicle, Identification) {

@@ -10,6 +10,7 @@ mod identify;
 mod import;
 mod kills;
 mod library;
+mod predict;
 mod show;
 mod study;
 #[path = "../support/mod.rs"]

@@ -8,6 +8,7 @@
 // Every test that includes this uses its own part.
 #![allow(dead_code, unused_imports)]
 
+pub mod controlled;
 pub mod drag;
 pub mod effects;
 pub mod hidden;

@@ -128,7 +128,7 @@ fn normal<'a>(
     };
     let pull = |j: usize| ridge[j] * (x[free[j]] - problem.model.base[free[j]]);
     let downhill = (0..free.len()).map(|j| along(j) - pull(j)).collect();
-    Normal { matrix: gram, downhill, ridge }
+    Normal { matrix: gram, downhill, ridge, within: &[] }
 }
 
 /// The point a step away, halved until it is better; none where no part of the step is.

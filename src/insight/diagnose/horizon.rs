@@ -16,10 +16,15 @@ const EVERY_S: f64 = 0.7;
 /// Root mean squares over all starts.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Horizon {
+    /// After so long, s.
     pub after_s: f64,
+    /// Of the velocity, m/s.
     pub velocity_m_s: f64,
+    /// Of the position, m.
     pub position_m: f64,
+    /// Of the attitude, deg.
     pub attitude_deg: f64,
+    /// How many there were.
     pub starts: usize,
 }
 

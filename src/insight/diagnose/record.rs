@@ -4,8 +4,9 @@
 use crate::base::stats::quantile;
 use crate::flight::Log;
 use crate::flight::series::{last_at, period};
-use crate::insight::criteria::consistent::{ONE_CLOCK_SHARE, ROTOR_COMMAND_ROWS, ROTOR_COMMAND_SHARE};
+use crate::insight::criteria::consistent::ONE_CLOCK_SHARE;
 use crate::insight::prepare::flight::PreparedFlight;
+use crate::insight::prepare::rotors::command_per_speed;
 use crate::insight::prepare::windows::{often_enough, windows};
 use crate::insight::quality::Quality;
 use crate::model::attitude::{Quaternion, body_axes};
@@ -73,9 +74,14 @@ pub struct FlightRecord {
 impl FlightRecord {
     /// `flight` of a vehicle like `base`; `full_rate_rad_s` is what a full stick asks for.
     pub fn new(flight: &PreparedFlight, full_rate_rad_s: [f64; 3]) -> Self {
+        Self::at_rate(flight, full_rate_rad_s, ENOUGH_HZ)
+    }
+
+    /// The same with the IMU thinned to about `enough_hz`; infinite keeps all of it.
+    pub fn at_rate(flight: &PreparedFlight, full_rate_rad_s: [f64; 3], enough_hz: f64) -> Self {
         let quality = &flight.quality;
         let log = &quality.log;
-        let every = ((1.0 / period(&flight.time)) / ENOUGH_HZ * 1.05).floor().max(1.0) as usize;
+        let every = ((1.0 / period(&flight.time)) / enough_hz * 1.05).floor().max(1.0) as usize;
         let thin = |x: &[f64]| -> Vec<f64> { x.iter().copied().step_by(every).collect() };
         let fine = Fine { time: flight.time.clone(), imu: std::array::from_fn(|k| flight.measured(k)), every };
         let time = thin(&flight.time);
@@ -105,7 +111,7 @@ impl FlightRecord {
             block: flight.block.iter().copied().step_by(every).collect(),
             sent: sent(quality, full_rate_rad_s),
             one_clock: one_clock(log),
-            from_rotors: from_rotors(log),
+            from_rotors: command_per_speed(log).is_some(),
             commanded: [0, 3].map(|k| log.setpoint.rows.iter().any(|row| row[k].is_finite())),
             imu: std::array::from_fn(|k| thin(&fine.imu[k])),
             fine,
@@ -159,16 +165,6 @@ fn one_clock(log: &Log) -> bool {
     let same = |t: &&f64| last_at(&log.imu.time_s, **t).is_some_and(|i| log.imu.time_s[i] == **t);
     let n = log.setpoint.len();
     n > 0 && log.setpoint.time_s.iter().filter(same).count() as f64 > ONE_CLOCK_SHARE.get() * n as f64
-}
-
-/// Whether the thrust command is the mean rotor speed in another unit.
-fn from_rotors(log: &Log) -> bool {
-    let speeds = log.rotors.means().into_iter();
-    let ratios: Vec<f64> = log.setpoint.rows.iter().zip(speeds).map(|(row, speed)| row[3] / speed).collect();
-    let finite: Vec<f64> = ratios.into_iter().filter(|r| r.is_finite()).collect();
-    let middle = crate::base::stats::median(&finite);
-    let same = finite.iter().filter(|r| (*r / middle - 1.0).abs() < 1e-6).count() as f64;
-    finite.len() > ROTOR_COMMAND_ROWS.count() && same > ROTOR_COMMAND_SHARE.get() * finite.len() as f64
 }
 
 /// Commands as shares of what a full stick asks for; what was not commanded is 0.

@@ -1,5 +1,6 @@
-//! Gauss-Newton steps within bounds.
+//! Gauss-Newton steps within bounds, and within half-spaces.
 
+use super::halfspace::{Halfspace, minimum};
 use super::inverse::inverse;
 use nalgebra::{DMatrix, DVector};
 
@@ -19,6 +20,8 @@ pub struct Normal<'a> {
     pub downhill: Vec<f64>,
     /// What is added to the diagonal: one over the variance that each number is known with beforehand.
     pub ridge: Vec<f64>,
+    /// What the numbers have to satisfy besides their bounds.
+    pub within: &'a [Halfspace],
 }
 
 /// How a step that does not lower the squares is made shorter.
@@ -37,6 +40,9 @@ impl Normal<'_> {
     /// The step to the minimum, with `damping` times its own information on each number's diagonal. Numbers at a bound
     /// that they push against, and those that nothing tells, stay.
     pub fn step(&self, at: &[Bounded], damping: f64) -> Option<Vec<f64>> {
+        if !self.within.is_empty() {
+            return self.step_within(at, damping);
+        }
         let own = |j: usize| self.matrix[(j, j)];
         let mut moving: Vec<usize> = (0..at.len()).filter(|&j| own(j) + self.ridge[j] > 0.0).collect();
         loop {
@@ -56,6 +62,29 @@ impl Normal<'_> {
             }
             moving = still;
         }
+    }
+
+    /// The same where half-spaces hold the numbers together; the bounds are half-spaces too.
+    fn step_within(&self, at: &[Bounded], damping: f64) -> Option<Vec<f64>> {
+        let told = |&j: &usize| self.matrix[(j, j)] + self.ridge[j] > 0.0 && at[j].low < at[j].high;
+        let moving: Vec<usize> = (0..at.len()).filter(told).collect();
+        let n = moving.len();
+        let part = DMatrix::from_fn(n, n, |a, b| self.matrix[(moving[a], moving[b])]);
+        let ridge: Vec<f64> = moving.iter().map(|&j| self.ridge[j] + damping * self.matrix[(j, j)]).collect();
+        let downhill: Vec<f64> = moving.iter().map(|&j| self.downhill[j]).collect();
+        let here: Vec<f64> = at.iter().map(|b| b.value).collect();
+        let mut rows: Vec<Halfspace> = Vec::new();
+        for (a, &j) in moving.iter().enumerate() {
+            rows.push(Halfspace::bound(a, n, 1.0, at[j].low - at[j].value));
+            rows.push(Halfspace::bound(a, n, -1.0, at[j].value - at[j].high));
+        }
+        let reduced =
+            |h: &Halfspace| Halfspace { row: moving.iter().map(|&j| h.row[j]).collect(), least: -h.room(&here) };
+        rows.extend(self.within.iter().map(reduced));
+        let step = minimum(&part, &ridge, &downhill, &rows)?;
+        let mut out = vec![0.0; at.len()];
+        moving.iter().zip(step).for_each(|(&j, by)| out[j] = by);
+        Some(out)
     }
 
     /// The first step that brings the squares below `before`: the values that it leads to, their squares, and what
@@ -103,7 +132,7 @@ mod tests {
         let cost = |v: &[f64]| ((v[0] - 1.0).powi(2) + (v[0] + v[1] - 4.0).powi(2), ());
         for (y, high, wanted) in [(0.0, 9.0, [1.0, 3.0]), (2.0, 2.0, [1.5, 2.0])] {
             let at = [Bounded { value: 0.0, low: -9.0, high: 9.0 }, Bounded { value: y, low: 0.0, high }];
-            let normal = Normal { matrix: &matrix, downhill: vec![5.0 - y, 4.0 - y], ridge: vec![0.0; 2] };
+            let normal = Normal { matrix: &matrix, downhill: vec![5.0 - y, 4.0 - y], ridge: vec![0.0; 2], within: &[] };
             let before = cost(&[0.0, y]).0;
             let mut damping = 1e-9;
             for shorter in [Shorter::Halved(1), Shorter::Damped(&mut damping)] {
@@ -116,7 +145,7 @@ mod tests {
     #[test]
     fn a_step_that_never_pays_is_none() {
         let matrix = DMatrix::from_element(1, 1, 1.0);
-        let normal = Normal { matrix: &matrix, downhill: vec![1.0], ridge: vec![0.0] };
+        let normal = Normal { matrix: &matrix, downhill: vec![1.0], ridge: vec![0.0], within: &[] };
         let at = [Bounded { value: 0.0, low: -1.0, high: 1.0 }];
         assert!(normal.descend(&at, Shorter::Halved(5), 1.0, |_| (2.0, ())).is_none());
     }

@@ -1,10 +1,11 @@
 //! Discharge: a line through the voltage in flight.
 
-use super::rates::{Compared, times};
+use super::rates::times;
 use super::solve::{Solution, Unknown, solve};
 use crate::flight::series::last_at;
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::dynamics::battery::discharged;
+use crate::model::vehicle::Battery;
 
 /// Order of the unknowns: rate (V/s), then the voltage at the beginning of each flight (V).
 pub const RATE: usize = 0;
@@ -49,18 +50,19 @@ pub fn fit(data: &Data, part: DataPart) -> Option<Solution> {
     solve(&unknowns, &blocks, &residuals)
 }
 
-/// Measured voltage and the line, V.
-pub fn compare(data: &Data, part: DataPart, fit: &Solution) -> Compared {
-    let measured = measured(data);
-    let chosen = data.choose(part, |f, i| measured[f][i].is_finite());
+/// The pack that the line describes: from the highest start to as low as was flown, and at least as far as `base` flies
+/// its own.
+pub fn pack(data: &Data, part: DataPart, fit: &Solution, base: &Battery) -> Battery {
     let begins = beginnings(data);
-    let line = data.flights.iter().enumerate().map(|(f, flight)| {
-        let line = |t: &f64| discharged(fit.values[INITIAL + f], fit.values[RATE], t - begins[f]);
-        flight.time.iter().map(line).collect::<Vec<_>>()
+    let line = |f: usize, t: f64| discharged(fit.values[INITIAL + f], fit.values[RATE], t - begins[f]);
+    let chosen = data.choose(part, |_, _| true);
+    let ends = data.flights.iter().zip(&chosen).enumerate().filter_map(|(f, (flight, chosen))| {
+        let [first, last] = [chosen.first()?, chosen.last()?].map(|&i| flight.time[i]);
+        Some([line(f, first), line(f, last)])
     });
-    Compared {
-        time: times(data, &chosen),
-        measured: Data::pick(&measured, &chosen),
-        predicted: Data::pick(&line.collect::<Vec<_>>(), &chosen),
-    }
+    let ends: Vec<[f64; 2]> = ends.collect();
+    let full_v = ends.iter().map(|e| e[0].max(e[1])).fold(f64::NEG_INFINITY, f64::max);
+    let lowest = ends.iter().map(|e| e[0].min(e[1])).fold(f64::INFINITY, f64::min);
+    let empty_v = lowest.min(full_v * base.empty_v / base.full_v);
+    Battery { full_v, empty_v, rate_v_s: fit.values[RATE].min(0.0) }
 }

@@ -2,7 +2,7 @@
 
 use super::AXES;
 use super::estimate::Estimate;
-use super::result::{BatteryEstimate, DragEstimate, Identification, Response};
+use super::result::{BatteryEstimate, DragEstimate, Identification, Response, ThrustEstimate};
 use crate::insight::quality::{LogFinding, StreamSummary};
 use crate::model::vehicle::Vehicle;
 use serde::Serialize;
@@ -20,6 +20,7 @@ pub struct IdentificationDocument<'a> {
     max_rate_rad_s: BTreeMap<&'a str, &'a Estimate>,
     /// c0..c5 of the paper's Eq. 7, N.
     thrust_coefficients: &'a [Estimate; 6],
+    thrust: &'a ThrustEstimate,
     /// 1 and 99 % of the thrust command in flight, -1..1.
     thrust_flown: Option<[f64; 2]>,
     drag: &'a DragEstimate,
@@ -46,6 +47,7 @@ impl<'a> IdentificationDocument<'a> {
             response: AXES.into_iter().chain(["thrust"]).zip(&found.response).collect(),
             max_rate_rad_s: AXES.into_iter().zip(&found.max_rate_rad_s).collect(),
             thrust_coefficients: &found.thrust_n,
+            thrust: &found.thrust,
             thrust_flown: found.flown,
             drag: &found.drag,
             battery: &found.battery,

@@ -32,6 +32,11 @@ impl Estimate {
         Self::new(value, solution.half_width(i))
     }
 
+    /// The same value, which is not kept: without an interval, and why.
+    pub fn left(self, why: &str) -> Self {
+        Self { low: None, high: None, why: Some(why.into()), ..self }
+    }
+
     /// None, and why.
     pub fn unknown(why: impl Into<String>) -> Self {
         Self { why: Some(why.into()), ..Self::default() }

@@ -1,55 +1,94 @@
 //! Thrust and drag together, from the specific force along all three body axes (paper Eq. 6, 7 and 9).
 
-use super::rates::{Compared, TAUS_S, times};
-use super::solve::{Solution, Unknown, solve};
+use super::inputs::Inputs;
+use super::rates::TAUS_S;
+use super::solve::{Solution, Unknown, solve_within};
 use crate::base::stats::mean;
+use crate::flight::lowpass::LowPass;
+use crate::flight::series::period;
+use crate::insight::criteria::identified::DRAG_RATIO;
+use crate::insight::estimate::halfspace::{Halfspace, minimum};
 use crate::insight::estimate::range::{DRAG_1_M, TIME_CONSTANT_S};
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
+use crate::insight::prepare::flight::PreparedFlight;
 use crate::model::dynamics::force_in_body;
+use crate::model::thrust::shape::{self, ThrustLimit};
 use crate::model::thrust::specific_thrust;
 use nalgebra::{DMatrix, DVector};
 
-/// Which terms of the model are fitted; the others are zero, or given.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Terms {
-    /// c0..c5 of Eq. 7.
-    pub thrust: [bool; 6],
-    /// Drag, with the constant offsets of the specific force along x and y beside it.
-    pub drag: bool,
-}
-
-/// Order of the unknowns: time constant (s), c0..c5 (m/s2), drag along x, y, z (1/m), offsets along x, y (m/s2).
+/// Order of a solution's values: time constant (s), c0..c5 (m/s2), drag along x, y, z (1/m), offsets along x, y (m/s2).
 pub const TAU: usize = 0;
 pub const THRUST: usize = 1;
 pub const DRAG_AT: usize = 7;
 pub const OFFSET: usize = 10;
-const UNKNOWNS: usize = 12;
+pub const VALUES: usize = 12;
+
+/// Slower than this, the voltage is what the model's discharge can follow, Hz; what is faster is the sag under load,
+/// which the model has as part of the thrust curve.
+const VOLTAGE_HZ: f64 = 0.5;
+/// Least drag over mass of an axis, 1/m: without any, an ellipsoid has no size.
+const LEAST_DRAG_1_M: f64 = 1e-4;
+
+/// A curve of one number: proportional to the square of the throttle, as to that of a rotor's speed.
+pub const SQUARE: [f64; 6] = [0.25, 0.5, 0.25, 0.0, 0.0, 0.0];
+
+/// What is fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Terms {
+    /// The thrust curve is a sum of these, each as c0..c5.
+    pub curves: Vec<[f64; 6]>,
+    /// Drag, with the constant offsets of the specific force along x and y beside it.
+    pub drag: bool,
+    /// Drag along x, y, z that is not fitted, 1/m.
+    pub given_drag: [f64; 3],
+    /// The accelerometer's bias along x, y, z, m/s2; it is taken off.
+    pub bias: [f64; 3],
+    /// Cut-off of the zero-phase filter, Hz.
+    pub cutoff_hz: f64,
+    /// Voltages between which the curve has to be a vehicle's.
+    pub volts: [f64; 2],
+    /// Gravity, m/s2.
+    pub gravity: f64,
+}
+
+impl Terms {
+    /// The terms of a whole curve: c0..c3, with c4 and c5 where the voltage tells them.
+    pub fn curve(by_voltage: bool) -> Vec<[f64; 6]> {
+        let unit = |k: usize| std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
+        (0..if by_voltage { 6 } else { 4 }).map(unit).collect()
+    }
+
+    fn by_voltage(&self) -> bool {
+        self.curves.iter().any(|c| c[4] != 0.0 || c[5] != 0.0)
+    }
+}
 
 /// Measured and predicted specific force.
 pub struct Force<'a> {
     data: &'a Data,
+    inputs: &'a Inputs,
     terms: Terms,
-    cutoff_hz: f64,
     /// Along x, y, z, of every flight, m/s2, smoothed.
     measured: [Vec<Vec<f64>>; 3],
     /// Voltage, V, or 0 where the terms leave it out.
     voltage: Vec<Vec<f64>>,
-    /// Drag along x, y, z that is not fitted, 1/m.
-    given_drag: [f64; 3],
 }
 
 impl<'a> Force<'a> {
-    /// `bias` is the accelerometer's along x, y, z, m/s2; it is taken off.
-    pub fn new(data: &'a Data, terms: Terms, bias: [f64; 3], given_drag: [f64; 3], cutoff_hz: f64) -> Self {
-        let by_voltage = terms.thrust[4] || terms.thrust[5];
+    /// Of what the accelerometer measured; where `thrust` (m/s2, every flight) is given, along z of that.
+    pub fn new(data: &'a Data, inputs: &'a Inputs, terms: Terms, thrust: Option<&[Vec<f64>]>) -> Self {
         let channel = |k: usize| {
-            data.signals(|flight| {
-                let force = flight.measured(3 + k).iter().map(|f| f - bias[k]).collect();
-                flight.smooth(force, cutoff_hz)
-            })
+            let one = |(f, flight): (usize, &PreparedFlight)| {
+                let force = match thrust {
+                    Some(thrust) if k == 2 => thrust[f].clone(),
+                    _ => flight.measured(3 + k).iter().map(|force| force - terms.bias[k]).collect(),
+                };
+                flight.smooth(force, terms.cutoff_hz)
+            };
+            data.flights.iter().enumerate().map(one).collect()
         };
-        let voltage = data.signals(|f| if by_voltage { f.voltage.clone() } else { vec![0.0; f.time.len()] });
-        Self { data, terms, cutoff_hz, measured: [0, 1, 2].map(channel), voltage, given_drag }
+        let voltage = data.signals(|f| if terms.by_voltage() { slow(f) } else { vec![0.0; f.time.len()] });
+        Self { data, inputs, measured: [0, 1, 2].map(channel), terms, voltage }
     }
 
     /// Channels in use: x and y tell drag only.
@@ -57,37 +96,47 @@ impl<'a> Force<'a> {
         if self.terms.drag { &[0, 1, 2] } else { &[2] }
     }
 
-    /// The thrust command in [-1, 1] behind its lag.
-    fn command(&self, tau: f64) -> Vec<Vec<f64>> {
-        self.data.signals(|flight| flight.response(3, tau, 0.0).iter().map(|u| 2.0 * u - 1.0).collect())
+    /// Thrust over mass of the curve `c`, the mean over what lifts, of every flight.
+    fn thrust(&self, c: &[f64; 6], tau: f64) -> Vec<Vec<f64>> {
+        let one = |(f, flight): (usize, &PreparedFlight)| {
+            let inputs = self.inputs.at(f, &flight.time, tau);
+            let mean = |i: usize| {
+                let v = self.voltage[f][i];
+                inputs.iter().map(|u| specific_thrust(c, u[i], v)).sum::<f64>() / inputs.len() as f64
+            };
+            (0..flight.time.len()).map(mean).collect()
+        };
+        self.data.flights.iter().enumerate().map(one).collect()
     }
 
     /// Specific force along each axis, m/s2, smoothed like the measurement.
     fn predicted(&self, x: &[f64]) -> [Vec<Vec<f64>>; 3] {
-        let thrust: [f64; 6] = std::array::from_fn(|k| x[THRUST + k]);
-        let drag: [f64; 3] = std::array::from_fn(|k| if self.terms.drag { x[DRAG_AT + k] } else { self.given_drag[k] });
+        let c: [f64; 6] = std::array::from_fn(|k| x[THRUST + k]);
+        let given = self.terms.given_drag;
+        let drag: [f64; 3] = std::array::from_fn(|k| if self.terms.drag { x[DRAG_AT + k] } else { given[k] });
         let draggy = drag.iter().any(|k| *k > 0.0);
-        let command = self.command(x[TAU]);
+        let thrust = self.thrust(&c, x[TAU]);
         let mut out: [Vec<Vec<f64>>; 3] = Default::default();
         for (f, flight) in self.data.flights.iter().enumerate() {
             let mut force: [Vec<f64>; 3] = Default::default();
-            for (i, u) in command[f].iter().enumerate() {
+            for (i, &lift) in thrust[f].iter().enumerate() {
                 // A log without velocity is predicted as if it stood still.
                 let v = if draggy { [0, 1, 2].map(|k| flight.velocity[k][i]) } else { [0.0; 3] };
-                let [fx, fy, fz] = force_in_body(&thrust, &drag, *u, self.voltage[f][i], v);
+                let [fx, fy, fz] = force_in_body(&[lift, 0.0, 0.0, 0.0, 0.0, 0.0], &drag, 0.0, 0.0, v);
                 force[0].push(fx + x[OFFSET]);
                 force[1].push(fy + x[OFFSET + 1]);
                 force[2].push(fz);
             }
             for (out, force) in out.iter_mut().zip(force) {
-                out.push(flight.smooth(force, self.cutoff_hz));
+                out.push(flight.smooth(force, self.terms.cutoff_hz));
             }
         }
         out
     }
 
-    fn choose(&self, part: DataPart) -> Chosen {
-        let mut x = [0.0; UNKNOWNS];
+    /// The samples of `part` at which everything is known.
+    pub fn choose(&self, part: DataPart) -> Chosen {
+        let mut x = [0.0; VALUES];
         x[TAU] = TAUS_S[0];
         x[THRUST + 5] = 1.0;
         x[DRAG_AT..DRAG_AT + 3].fill(1.0);
@@ -98,101 +147,149 @@ impl<'a> Force<'a> {
         self.data.choose(part, known)
     }
 
-    /// c0..c5 by linear least squares on the vertical specific force at this time constant, without drag; and what is
-    /// left.
-    fn linear(&self, tau: f64, chosen: &Chosen) -> Option<([f64; 6], f64)> {
-        let used: Vec<usize> = (0..6).filter(|&k| self.terms.thrust[k]).collect();
-        let (u, v) = (Data::pick(&self.command(tau), chosen), Data::pick(&self.voltage, chosen));
+    /// Weights of the curves by linear least squares on the vertical specific force at this time constant, without drag
+    /// and under `limits`; and what is left.
+    fn linear(&self, tau: f64, chosen: &Chosen, limits: &[Halfspace]) -> Option<(Vec<f64>, f64)> {
+        let signals: Vec<Vec<f64>> =
+            self.terms.curves.iter().map(|c| Data::pick(&self.thrust(c, tau), chosen)).collect();
         let measured = Data::pick(&self.measured[2], chosen);
-        let regressor = |i: usize, k: usize| {
-            let mut unit = [0.0; 6];
-            unit[k] = 1.0;
-            specific_thrust(&unit, u[i], v[i])
-        };
-        let n = used.len();
-        let sum = |f: &dyn Fn(usize) -> f64| (0..u.len()).map(f).sum::<f64>();
-        let normal = DMatrix::from_fn(n, n, |a, b| sum(&|i| regressor(i, used[a]) * regressor(i, used[b])));
-        let right = DVector::from_fn(n, |a, _| sum(&|i| regressor(i, used[a]) * measured[i]));
-        let found = normal.cholesky()?.solve(&right);
-        let mut c = [0.0; 6];
-        used.iter().zip(found.iter()).for_each(|(&k, value)| c[k] = *value);
-        let left =
-            mean(&(0..u.len()).map(|i| (measured[i] - specific_thrust(&c, u[i], v[i])).powi(2)).collect::<Vec<_>>());
-        Some((c, left))
+        let n = signals.len();
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let normal = DMatrix::from_fn(n, n, |a, b| product(&signals[a], &signals[b]));
+        let right: Vec<f64> = signals.iter().map(|signal| product(signal, &measured)).collect();
+        let weights = minimum(&normal, &vec![0.0; n], &right, limits)?;
+        let error = |i: usize| (0..n).map(|k| weights[k] * signals[k][i]).sum::<f64>() - measured[i];
+        let left = mean(&(0..measured.len()).map(|i| error(i).powi(2)).collect::<Vec<_>>());
+        Some((weights, left))
     }
 
-    /// Fits all unknowns of the terms; the others stay at zero with no width.
-    /// `near` is a solution to start from.
-    pub fn fit(&self, part: DataPart, near: Option<&Solution>) -> Option<Solution> {
-        let chosen = self.choose(part);
-        let thinned: Chosen = chosen.iter().map(|c| c.iter().copied().step_by(7).collect()).collect();
-        let starts = TAUS_S.iter().filter_map(|&tau| self.linear(tau, &thinned).map(|(c, left)| (left, tau, c)));
-        let (_, tau, c) = starts.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let blocks = self.data.blocks(&chosen);
-        let fixed = Unknown { start: 0.0, low: 0.0, high: 0.0, step: 0.0, linear: true };
-        let mut unknowns = vec![fixed; UNKNOWNS];
-        unknowns[TAU] =
-            Unknown { start: tau, low: TIME_CONSTANT_S[0], high: TIME_CONSTANT_S[1], step: 2e-5, linear: false };
-        for k in (0..6).filter(|&k| self.terms.thrust[k]) {
-            unknowns[THRUST + k] = Unknown { start: c[k], low: -1e4, high: 1e4, step: 1e-3, linear: true };
-        }
-        if self.terms.drag {
-            unknowns[DRAG_AT..DRAG_AT + 3].fill(Unknown {
-                start: 0.02,
-                low: DRAG_1_M[0],
-                high: DRAG_1_M[1],
-                step: 1e-4,
-                linear: false,
-            });
-            unknowns[OFFSET..].fill(Unknown { start: 0.0, low: -5.0, high: 5.0, step: 1e-3, linear: true });
-        }
-        // Only what moves is handed on.
-        let moving: Vec<usize> = (0..UNKNOWNS).filter(|&i| unknowns[i].high > unknowns[i].low).collect();
-        let whole = |part: &[f64]| {
-            let mut x = vec![0.0; UNKNOWNS];
-            moving.iter().zip(part).for_each(|(&i, value)| x[i] = *value);
-            x
+    /// Limits of the curve, on the weights of its terms.
+    fn limits(&self, flown: [f64; 2]) -> Vec<Halfspace> {
+        let one = |limit: &ThrustLimit| Halfspace {
+            row: self.terms.curves.iter().map(|c| c.iter().zip(limit.row).map(|(c, row)| c * row).sum()).collect(),
+            least: limit.least,
         };
+        shape::limits(self.terms.volts, self.terms.gravity, flown).iter().map(one).collect()
+    }
+
+    /// Fits the curve, its time constant where the inputs lag, and the drag, under the limits of a vehicle.
+    pub fn fit(&self, part: DataPart) -> Option<Solution> {
+        let chosen = self.choose(part);
+        let limits = self.limits(self.inputs.flown(self.data, &chosen, TAUS_S[0]));
+        let thinned: Chosen = chosen.iter().map(|c| c.iter().copied().step_by(7).collect()).collect();
+        let taus = if self.inputs.lags() { &TAUS_S[..] } else { &TAUS_S[..1] };
+        let starts = taus.iter().filter_map(|&tau| self.linear(tau, &thinned, &limits).map(|(w, left)| (left, tau, w)));
+        let (_, tau, weights) = starts.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let unknowns = self.unknowns(tau, &weights);
+        let layout = Layout { terms: &self.terms, lags: self.inputs.lags() };
+        let n = weights.len();
+        let widened = |h: &Halfspace, at: usize| {
+            let mut row = vec![0.0; unknowns.len()];
+            row[at..at + h.row.len()].copy_from_slice(&h.row);
+            Halfspace { row, least: h.least }
+        };
+        let first = usize::from(layout.lags);
+        let mut within: Vec<Halfspace> = limits.iter().map(|h| widened(h, first)).collect();
+        if self.terms.drag {
+            within.extend(drag_limits().iter().map(|h| widened(h, first + n)));
+        }
         let measured: Vec<Vec<f64>> = self.axes().iter().map(|&k| Data::pick(&self.measured[k], &chosen)).collect();
         let residuals = |x: &[f64]| {
-            let predicted = self.predicted(&whole(x));
+            let predicted = self.predicted(&layout.values(x));
             let channel = |(n, &k): (usize, &usize)| {
                 Data::pick(&predicted[k], &chosen).iter().zip(&measured[n]).map(|(p, m)| p - m).collect()
             };
             self.axes().iter().enumerate().map(channel).collect::<Vec<Vec<f64>>>()
         };
-        let start = |i: usize| near.map_or(unknowns[i].start, |near| near.values[i]);
-        let moved: Vec<Unknown> = moving.iter().map(|&i| Unknown { start: start(i), ..unknowns[i] }).collect();
-        let found = solve(&moved, &blocks, &residuals)?;
-        let mut out = Solution {
-            values: whole(&found.values),
-            covariance: DMatrix::zeros(UNKNOWNS, UNKNOWNS),
-            at_bound: vec![false; UNKNOWNS],
-            noise: found.noise,
-        };
-        for (a, &i) in moving.iter().enumerate() {
-            out.at_bound[i] = found.at_bound[a];
-            for (b, &j) in moving.iter().enumerate() {
-                out.covariance[(i, j)] = found.covariance[(a, b)];
-            }
-        }
-        Some(out)
+        let found = solve_within(&unknowns, &within, &self.data.blocks(&chosen), &residuals)?;
+        Some(layout.solution(&found))
     }
 
-    /// Measured and predicted specific force along `axis`, m/s2, and when.
-    pub fn compare(&self, part: DataPart, fit: &Solution, axis: usize) -> Compared {
-        let chosen = self.choose(part);
-        let predicted = self.predicted(&fit.values);
-        Compared {
-            time: times(self.data, &chosen),
-            measured: Data::pick(&self.measured[axis], &chosen),
-            predicted: Data::pick(&predicted[axis], &chosen),
+    fn unknowns(&self, tau: f64, weights: &[f64]) -> Vec<Unknown> {
+        let mut out = Vec::new();
+        if self.inputs.lags() {
+            let [low, high] = TIME_CONSTANT_S;
+            out.push(Unknown { start: tau, low, high, step: 2e-5, linear: false });
         }
+        let weight = |&start: &f64| Unknown { start, low: -1e4, high: 1e4, step: 1e-3, linear: true };
+        out.extend(weights.iter().map(weight));
+        if self.terms.drag {
+            let (low, high) = (LEAST_DRAG_1_M, DRAG_1_M[1]);
+            out.extend([Unknown { start: 0.02, low, high, step: 1e-4, linear: false }; 3]);
+            out.extend([Unknown { start: 0.0, low: -5.0, high: 5.0, step: 1e-3, linear: true }; 2]);
+        }
+        out
     }
 
-    /// 1 and 99 % of the thrust command in [-1, 1], behind its lag, in flight.
+    /// 1 and 99 % of the mean input, behind a lag of `tau`, in flight.
     pub fn flown(&self, tau: f64) -> [f64; 2] {
-        let u = Data::pick(&self.command(tau), &self.choose(DataPart::All));
-        [0.01, 0.99].map(|q| crate::base::stats::quantile(&u, q))
+        self.inputs.flown(self.data, &self.choose(DataPart::All), tau)
+    }
+
+    /// Thrust over mass by `c` at every sample, m/s2: what others can be fitted to.
+    pub fn thrust_by(&self, solution: &Solution) -> Vec<Vec<f64>> {
+        let c: [f64; 6] = std::array::from_fn(|k| solution.values[THRUST + k]);
+        self.thrust(&c, solution.values[TAU])
+    }
+}
+
+/// Drag along no axis is a small share of that along another.
+fn drag_limits() -> Vec<Halfspace> {
+    let pairs = (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).filter(|(i, j)| i != j);
+    let limit = |(i, j): (usize, usize)| {
+        let mut row = vec![0.0; 3];
+        (row[i], row[j]) = (1.0, -1.0 / DRAG_RATIO.get());
+        Halfspace { row, least: 0.0 }
+    };
+    pairs.map(limit).collect()
+}
+
+/// The voltage without what is faster than a discharge, V.
+fn slow(flight: &PreparedFlight) -> Vec<f64> {
+    let mut voltage = flight.voltage.clone();
+    if voltage.iter().all(|v| v.is_finite())
+        && let Some(filter) = LowPass::new(VOLTAGE_HZ, period(&flight.time))
+    {
+        filter.run(&mut voltage);
+    }
+    voltage
+}
+
+/// Where the unknowns of a fit are among a solution's values.
+struct Layout<'a> {
+    terms: &'a Terms,
+    lags: bool,
+}
+
+impl Layout<'_> {
+    /// The values are this matrix times the unknowns.
+    fn matrix(&self) -> DMatrix<f64> {
+        let first = usize::from(self.lags);
+        let n = self.terms.curves.len();
+        let rest = if self.terms.drag { VALUES - DRAG_AT } else { 0 };
+        let mut out = DMatrix::zeros(VALUES, first + n + rest);
+        if self.lags {
+            out[(TAU, 0)] = 1.0;
+        }
+        for (j, curve) in self.terms.curves.iter().enumerate() {
+            (0..6).for_each(|k| out[(THRUST + k, first + j)] = curve[k]);
+        }
+        (0..rest).for_each(|k| out[(DRAG_AT + k, first + n + k)] = 1.0);
+        out
+    }
+
+    fn values(&self, x: &[f64]) -> Vec<f64> {
+        (self.matrix() * DVector::from_column_slice(x)).iter().copied().collect()
+    }
+
+    fn solution(&self, found: &Solution) -> Solution {
+        let matrix = self.matrix();
+        let touched = |i: usize| (0..matrix.ncols()).any(|j| matrix[(i, j)] != 0.0 && found.at_bound[j]);
+        Solution {
+            values: self.values(&found.values),
+            covariance: &matrix * &found.covariance * matrix.transpose(),
+            at_bound: (0..VALUES).map(touched).collect(),
+            noise: found.noise.clone(),
+        }
     }
 }

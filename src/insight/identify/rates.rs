@@ -64,16 +64,13 @@ impl<'a> RateAxis<'a> {
         solve(&unknowns, &blocks, &residuals)
     }
 
-    /// Measured and predicted rates of `part`, rad/s, and when.
-    pub fn compare(&self, part: DataPart, fit: &Solution) -> Compared {
+    /// How well a fit predicts `part`, in rad/s.
+    pub fn score(&self, part: DataPart, fit: &Solution) -> Score {
         let chosen = self.choose(part);
         let [tau, gain, offset] = [fit.values[0], fit.values[1], fit.values[2]];
         let predicted = Data::pick(&self.response(tau, fit.values.get(3).copied().unwrap_or(0.0)), &chosen);
-        Compared {
-            time: times(self.data, &chosen),
-            measured: Data::pick(&self.measured, &chosen),
-            predicted: predicted.iter().map(|r| gain * r + offset).collect(),
-        }
+        let predicted: Vec<f64> = predicted.iter().map(|r| gain * r + offset).collect();
+        Score::of(&Data::pick(&self.measured, &chosen), &predicted)
     }
 }
 
@@ -88,10 +85,4 @@ pub struct Compared {
     pub time: Vec<f64>,
     pub measured: Vec<f64>,
     pub predicted: Vec<f64>,
-}
-
-impl Compared {
-    pub fn score(&self) -> Score {
-        Score::of(&self.measured, &self.predicted)
-    }
 }

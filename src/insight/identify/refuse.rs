@@ -17,12 +17,23 @@ pub fn problems(logs: &[Quality]) -> Result<(), BadInput> {
     Ok(())
 }
 
-/// Fails where no parameter could be told, and where the vehicle could not fly.
-pub fn nothing(found: &Identification) -> Result<()> {
+/// Fails where no parameter could be told; unless `partial`, where rates or thrust could not be told at all; and where
+/// the vehicle could not fly.
+pub fn nothing(found: &Identification, partial: bool) -> Result<()> {
     if found.channels.is_empty() {
         let why = "no parameter could be told";
         let advice = "`racer check` names what is missing";
         return Err(BadInput::new("the logs", why, "at least one response", advice).into());
+    }
+    let kept = &found.kept;
+    let rates = kept.lag[..3].contains(&true) || kept.rate.contains(&true);
+    for (told, what, key) in [(rates, "rates", "time_constant_s.roll"), (kept.thrust, "thrust", "thrust_n")] {
+        if !told && !partial {
+            let why = found.lent(key).map_or("the log does not tell it", String::as_str);
+            let why = format!("no {what}: {why}");
+            let advice = "a vehicle with the base vehicle's in their place is written with --partial";
+            return Err(BadInput::new("the logs", why, "rates and thrust that the logs tell", advice).into());
+        }
     }
     let cannot = |key, found| Error::Failed(format!("the identified vehicle cannot fly: {key}: {found}"));
     found.vehicle.check().map_err(|invalid| cannot(invalid.key, invalid.found))

@@ -1,11 +1,13 @@
 //! What an identification found: the vehicle, and everything to judge it by.
 
 use super::estimate::Estimate;
+use super::fits::Kept;
 use super::rates::Compared;
 use super::{AXES, IdentifyOptions, fastest};
 use crate::base::stats::Score;
 use crate::flight::spans::Span;
 use crate::insight::prepare::data::Data;
+use crate::model::vehicle::identified::{Origin, ThrustSource};
 use crate::model::vehicle::{Identified, LogSpan, Vehicle};
 use serde::Serialize;
 
@@ -43,10 +45,25 @@ pub struct DragEstimate {
     pub flown_m_s: Option<f64>,
 }
 
-impl DragEstimate {
-    pub(super) fn unknown(&mut self, why: &str) {
-        self.k_1_m = std::array::from_fn(|_| Estimate::unknown(why));
-    }
+/// The thrust in numbers that people know, and what it was identified from.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ThrustEstimate {
+    /// What it was identified from.
+    pub source: ThrustSource,
+    /// Lag of the rotors behind the motors' outputs, where these were logged, s.
+    pub rotor_lag_s: Estimate,
+    /// Lag of the motors' outputs behind the collective command, s, and the share of their mean that it explains.
+    pub command_lag_s: Option<f64>,
+    /// R2 of the mean motor output as the collective command tells it.
+    pub command_r2: Option<f64>,
+    /// c0..c5 of Eq. 7 over the motors' outputs (0 to 1 taken as -1 to 1), where these were logged, N.
+    pub over_motors_n: Option<[f64; 6]>,
+    /// Throttle that carries the vehicle in the middle of its pack, 0..1.
+    pub hover_throttle: Option<f64>,
+    /// Thrust of full throttle and full pack, N.
+    pub full_n: Estimate,
+    /// 1 and 99 % of the throttle in flight, 0..1.
+    pub flown_throttle: Option<[f64; 2]>,
 }
 
 /// Discharge.
@@ -74,27 +91,30 @@ pub struct ComparedChannel {
 }
 
 impl ComparedChannel {
-    pub(super) fn new(name: &str, unit: &'static str, scale: f64, train: &Compared, validation: &Compared) -> Self {
-        let scaled = |x: &Compared| Compared {
-            time: x.time.clone(),
-            measured: x.measured.iter().map(|v| v * scale).collect(),
-            predicted: x.predicted.iter().map(|v| v * scale).collect(),
-        };
-        ComparedChannel { name: name.into(), unit, train: scaled(train), validation: scaled(validation) }
+    /// How well the validation part was predicted.
+    pub fn score(&self) -> Score {
+        Score::of(&self.validation.measured, &self.validation.predicted)
     }
 }
 
 /// Everything that was found.
 #[derive(Clone, Debug)]
 pub struct Identification {
-    /// What `train` reads.
+    /// What `train` reads: fitted on all of the flights.
     pub vehicle: Vehicle,
+    /// The vehicle that the figures are of: everything that could be fitted on the training part alone. `racer predict`
+    /// makes the same figures of it.
+    pub validated: Vehicle,
+    /// Which numbers of the vehicle the logs told.
+    pub kept: Kept,
     /// Roll, pitch, yaw, thrust.
     pub response: [Response; 4],
     /// Body rates at full command, rad/s.
     pub max_rate_rad_s: [Estimate; 3],
     /// c0..c5 of Eq. 7 for the command in [-1, 1], N.
     pub thrust_n: [Estimate; 6],
+    /// The same in numbers that people know.
+    pub thrust: ThrustEstimate,
     /// Drag.
     pub drag: DragEstimate,
     /// Discharge.
@@ -132,14 +152,21 @@ impl Identification {
             base: options.base.name.clone(),
             logs: spans.collect(),
             full_rate_deg_s: full_rate_rad_s.map(f64::to_degrees),
+            thrust_from: ThrustSource::Command,
+            origin: Default::default(),
             assumed: Default::default(),
             interval: Default::default(),
+            rotors: None,
+            sensors: None,
         });
         let mut out = Self {
+            validated: vehicle.clone(),
             vehicle,
+            kept: Kept::default(),
             response: Default::default(),
             max_rate_rad_s: Default::default(),
             thrust_n: Default::default(),
+            thrust: Default::default(),
             drag: Default::default(),
             battery: Default::default(),
             accelerometer_bias_m_s2: Default::default(),
@@ -150,15 +177,24 @@ impl Identification {
             remarks: Vec::new(),
             channels: Vec::new(),
         };
+        out.origin("full_rate_deg_s", if options.max_rate_rad_s.is_some() { Origin::Option } else { Origin::Record });
         if options.max_rate_rad_s.or(said).is_none() {
-            out.remark("full-stick rates: neither the logs nor an option say them; taken from the base vehicle".into());
+            let why = "what a full stick asks for: neither the logs nor --full-rates say it";
+            out.assume("full_rate_deg_s", why);
         }
         let said = data.flights.iter().find_map(|flight| flight.quality.log.vehicle.mass_kg);
+        out.origin("mass_kg", if options.mass_kg.is_some() { Origin::Option } else { Origin::Record });
         match options.mass_kg.or(said) {
             Some(mass) => out.vehicle.mass_kg = mass,
             None => out.assume("mass_kg", "a flight does not tell it: weigh the vehicle and give --mass"),
         }
+        ["gravity_m_s2", "drag.air_density_kg_m3"].into_iter().for_each(|key| out.origin(key, Origin::Base));
         out
+    }
+
+    /// Whether the base vehicle lent this number, and why.
+    pub fn lent(&self, key: &str) -> Option<&String> {
+        self.vehicle.identified.as_ref().and_then(|identified| identified.assumed.get(key))
     }
 
     /// Every parameter but the responses, as people read it: name, estimate, digits, unit.
@@ -167,8 +203,10 @@ impl Identification {
         for (axis, rate) in AXES.iter().zip(&self.max_rate_rad_s) {
             rows.push((format!("maximum {axis} rate"), rate.times(1f64.to_degrees()), 1, "deg/s"));
         }
-        for (k, c) in self.thrust_n.iter().enumerate() {
-            rows.push((format!("thrust c{k}"), c.clone(), 3, if k < 4 { "N" } else { "N/V" }));
+        let small = self.thrust.full_n.value.is_some_and(|newtons| newtons < 10.0);
+        rows.push(("thrust at full throttle".into(), self.thrust.full_n.clone(), if small { 3 } else { 1 }, "N"));
+        if self.thrust.rotor_lag_s.value.is_some() {
+            rows.push(("lag of the rotors".into(), self.thrust.rotor_lag_s.times(1e3), 1, "ms"));
         }
         for (axis, k) in ["x", "y", "z"].iter().zip(&self.drag.k_1_m) {
             rows.push((format!("drag over mass, {axis}"), k.clone(), 4, "1/m"));
@@ -181,15 +219,25 @@ impl Identification {
         rows
     }
 
-    /// Marks a key of the vehicle file as taken from the base vehicle.
+    /// Marks a key of the vehicle file as taken from the base vehicle: it has no interval.
     pub(super) fn assume(&mut self, key: &str, why: &str) {
         if let Some(identified) = &mut self.vehicle.identified {
             identified.assumed.insert(key.into(), why.into());
+            identified.origin.insert(key.into(), Origin::Base);
+            identified.interval.remove(key);
         }
     }
 
-    /// Keeps an interval in the vehicle file.
-    pub(super) fn remember(&mut self, key: &str, interval: Option<Span>) {
+    /// Where a number of the vehicle file comes from.
+    pub(super) fn origin(&mut self, key: &str, origin: Origin) {
+        if let Some(identified) = &mut self.vehicle.identified {
+            identified.origin.insert(key.into(), origin);
+        }
+    }
+
+    /// A number of the vehicle file that the logs told, and its interval where it has one.
+    pub(super) fn found(&mut self, key: &str, interval: Option<Span>) {
+        self.origin(key, Origin::Log);
         if let (Some(identified), Some(interval)) = (&mut self.vehicle.identified, interval) {
             identified.interval.insert(key.into(), interval);
         }

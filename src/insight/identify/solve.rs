@@ -2,6 +2,7 @@
 
 use crate::base::stats::{NORMAL_95, robust_sd};
 use crate::insight::estimate::gram::Grams;
+use crate::insight::estimate::halfspace::{Halfspace, minimum};
 use crate::insight::estimate::jackknife::jackknife;
 use crate::insight::estimate::least_squares::{Bounded, Normal, Shorter};
 use crate::insight::estimate::robust::huber;
@@ -54,17 +55,28 @@ pub type Residuals<'a> = dyn Fn(&[f64]) -> Vec<Vec<f64>> + Sync + 'a;
 /// stretch of time of each sample: residuals of different stretches are taken for independent, those of one are not.
 /// `None` where there are fewer stretches than unknowns, or the residuals are not finite.
 pub fn solve(unknowns: &[Unknown], blocks: &[u32], residuals: &Residuals) -> Option<Solution> {
+    solve_within(unknowns, &[], blocks, residuals)
+}
+
+/// The same under linear inequalities beside the bounds. The covariance is that without them: it says what the data
+/// know.
+pub fn solve_within(
+    unknowns: &[Unknown],
+    within: &[Halfspace],
+    blocks: &[u32],
+    residuals: &Residuals,
+) -> Option<Solution> {
     let stretches = blocks.iter().collect::<BTreeSet<_>>().len();
     if stretches <= unknowns.len() {
         return None;
     }
-    let mut values: Vec<f64> = unknowns.iter().map(|u| u.start.clamp(u.low, u.high)).collect();
+    let mut values = start(unknowns, within)?;
     let mut damping = 1e-6;
     for _ in 0..STEPS {
         let weights = RobustWeights::of(&residuals(&values))?;
         let system = Linearised::at(unknowns, &values, &weights, blocks, residuals)?;
         let cost = |x: &[f64]| weights.cost(&residuals(x));
-        if !system.descend(unknowns, &mut values, &mut damping, &cost) {
+        if !system.descend(unknowns, within, &mut values, &mut damping, &cost) {
             break;
         }
     }
@@ -72,6 +84,25 @@ pub fn solve(unknowns: &[Unknown], blocks: &[u32], residuals: &Residuals) -> Opt
     let system = Linearised::at(unknowns, &values, &weights, blocks, residuals)?;
     let (covariance, at_bound) = system.covariance(unknowns, &values)?;
     Some(Solution { values, covariance, at_bound, noise: weights.noise })
+}
+
+/// The starts, within bounds and half-spaces: the nearest to what was asked for, in small changes.
+fn start(unknowns: &[Unknown], within: &[Halfspace]) -> Option<Vec<f64>> {
+    let asked: Vec<f64> = unknowns.iter().map(|u| u.start.clamp(u.low, u.high)).collect();
+    if within.iter().all(|h| h.room(&asked) >= 0.0) {
+        return Some(asked);
+    }
+    let n = unknowns.len();
+    let scale: Vec<f64> = unknowns.iter().map(|u| u.step.powi(-2)).collect();
+    let mut rows: Vec<Halfspace> = Vec::new();
+    for (i, u) in unknowns.iter().enumerate() {
+        rows.push(Halfspace::bound(i, n, 1.0, u.low - asked[i]));
+        rows.push(Halfspace::bound(i, n, -1.0, asked[i] - u.high));
+    }
+    rows.extend(within.iter().map(|h| Halfspace { row: h.row.clone(), least: -h.room(&asked) }));
+    let matrix = DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(&scale));
+    let by = minimum(&matrix, &vec![0.0; n], &vec![0.0; n], &rows)?;
+    Some(asked.iter().zip(by).map(|(x, by)| x + by).collect())
 }
 
 /// Weight of every sample.
@@ -144,6 +175,7 @@ impl Linearised {
     fn descend(
         &self,
         unknowns: &[Unknown],
+        within: &[Halfspace],
         values: &mut Vec<f64>,
         damping: &mut f64,
         cost: &dyn Fn(&[f64]) -> f64,
@@ -151,7 +183,7 @@ impl Linearised {
         let n = values.len();
         let own = self.grams.sum.view((0, 0), (n, n)).into_owned();
         let downhill = (0..n).map(|i| self.downhill(i)).collect();
-        let normal = Normal { matrix: &own, downhill, ridge: vec![0.0; n] };
+        let normal = Normal { matrix: &own, downhill, ridge: vec![0.0; n], within };
         let bounded = |(u, &value): (&Unknown, &f64)| Bounded { value, low: u.low, high: u.high };
         let at: Vec<Bounded> = unknowns.iter().zip(values.iter()).map(bounded).collect();
         let Some((next, lower, ())) = normal.descend(&at, Shorter::Damped(damping), self.cost, |x| (cost(x), ()))
@@ -229,6 +261,19 @@ mod tests {
         // 95 % of 320, less some 3 % that outliers to one side take; both values move together, so that four standard
         // deviations are 20.
         assert!((275..=315).contains(&inside), "{inside}");
+    }
+
+    #[test]
+    fn half_spaces_hold_where_the_data_would_leave_them() {
+        let (t, y, blocks) = data(1);
+        let residuals =
+            |x: &[f64]| vec![t.iter().zip(&y).map(|(t, y)| x[0] * (-t / x[1]).exp() - y).collect::<Vec<_>>()];
+        // 3 and 0.7 add up to more than 3.5; the start lies outside as well.
+        let within = [Halfspace { row: vec![-1.0, -1.0], least: -3.5 }];
+        let unknowns = [unknown(4.0, 0.0, 10.0), unknown(0.2, 0.01, 5.0)];
+        let found = solve_within(&unknowns, &within, &blocks, &residuals).unwrap();
+        assert!((found.values[0] + found.values[1] - 3.5).abs() < 1e-6, "{:?}", found.values);
+        assert!(found.half_width(0) > 0.0);
     }
 
     #[test]

@@ -16,8 +16,11 @@ const BLOCKS: f64 = 100.0;
 /// Which samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DataPart {
+    /// The first 70 % of the usable samples.
     Train,
+    /// The rest.
     Validation,
+    /// All usable samples.
     All,
 }
 

@@ -1,13 +1,13 @@
 //! A checked log on one clock, that of the IMU.
 
 use super::attitude::attitude;
+use super::lag::lagged;
 use crate::flight::Stream;
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::{held, interpolated, period};
 use crate::flight::spans::contain;
 use crate::insight::quality::Quality;
 use crate::model::attitude::Quaternion;
-use crate::model::dynamics::response::{alpha, toward};
 
 /// Odometry is not interpolated across more than this, s.
 const REACH_S: f64 = 0.25;
@@ -50,24 +50,7 @@ impl PreparedFlight {
     /// `tau` seconds. Commands are held until the next, and the lag is integrated exactly.
     pub fn response(&self, k: usize, tau: f64, delay: f64) -> Vec<f64> {
         let setpoint = &self.quality.log.setpoint;
-        let known: Vec<usize> = (0..setpoint.len()).filter(|&i| setpoint.rows[i][k].is_finite()).collect();
-        let Some(&first) = known.first() else { return vec![f64::NAN; self.time.len()] };
-        let (mut at, mut y) = (0, setpoint.rows[first][k]);
-        let lagged = |y: f64, i: usize, until: f64| {
-            toward(y, setpoint.rows[known[i]][k], alpha(tau, until - setpoint.time_s[known[i]]))
-        };
-        let one = |t: &f64| {
-            let t = t - delay;
-            if t < setpoint.time_s[first] {
-                return f64::NAN;
-            }
-            while known.get(at + 1).is_some_and(|&next| setpoint.time_s[next] <= t) {
-                y = lagged(y, at, setpoint.time_s[known[at + 1]]);
-                at += 1;
-            }
-            lagged(y, at, t)
-        };
-        self.time.iter().map(one).collect()
+        lagged(&setpoint.time_s, &setpoint.column(k), &self.time, tau, delay)
     }
 
     /// Number `k` of the IMU.

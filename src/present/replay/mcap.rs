@@ -2,15 +2,11 @@
 //! plot.
 
 use super::foxglove::{self, body, stamp};
-use super::schema::schema;
+use super::timed::{TimedMessage, write};
 use super::{Frame, Replay};
 use crate::base::error::{Error, Result};
 use crate::race::env::observe::LAYOUT;
-use ::mcap::records::MessageHeader;
-use ::mcap::{Compression, McapResult, WriteOptions, Writer};
 use serde_json::{Map, Value, json};
-use std::collections::BTreeMap;
-use std::io::Cursor;
 
 /// The bytes of the file. An error where times cannot be written.
 ///
@@ -42,19 +38,6 @@ pub fn mcap(replay: &Replay) -> Result<Vec<u8>> {
     // Stable: what was written first at a time stays first.
     messages.sort_by_key(|message| message.ns);
     write(&messages).map_err(Error::encode("the replay"))
-}
-
-struct TimedMessage {
-    ns: u64,
-    topic: &'static str,
-    schema: &'static str,
-    content: Value,
-}
-
-impl TimedMessage {
-    fn new(ns: u64, topic: &'static str, schema: &'static str, content: Value) -> Self {
-        TimedMessage { ns, topic, schema, content }
-    }
 }
 
 fn at(replay: &Replay, time_s: f64) -> Result<u64> {
@@ -137,34 +120,4 @@ fn remarks(replay: &Replay, i: usize) -> Result<Vec<TimedMessage>> {
         Ok(TimedMessage::new(ns, "/log", "foxglove.Log", foxglove::remark(ns, &body(i), &text, failed)))
     });
     messages.collect()
-}
-
-fn write(messages: &[TimedMessage]) -> McapResult<Vec<u8>> {
-    let mut file: Writer<Cursor<Vec<u8>>> = WriteOptions::new()
-        .library(concat!("racer/", env!("CARGO_PKG_VERSION")))
-        .compression(Some(Compression::Zstd))
-        .compression_threads(0)
-        .create(Cursor::new(Vec::new()))?;
-    // A schema describes the first message of every topic that has it.
-    let mut examples: BTreeMap<&str, BTreeMap<&str, &Value>> = BTreeMap::new();
-    for message in messages {
-        examples.entry(message.schema).or_default().entry(message.topic).or_insert(&message.content);
-    }
-    let mut schemas = BTreeMap::new();
-    for (name, examples) in examples {
-        let text = schema(name, &examples.into_values().collect::<Vec<_>>()).to_string();
-        schemas.insert(name, file.add_schema(name, "jsonschema", text.as_bytes())?);
-    }
-    let mut channels: BTreeMap<&str, (u16, u32)> = BTreeMap::new();
-    for message in messages {
-        let (channel_id, sequence) = match channels.get(message.topic) {
-            Some(&known) => known,
-            None => (file.add_channel(schemas[message.schema], message.topic, "json", &BTreeMap::new())?, 0),
-        };
-        channels.insert(message.topic, (channel_id, sequence + 1));
-        let header = MessageHeader { channel_id, sequence, log_time: message.ns, publish_time: message.ns };
-        file.write_to_known_channel(&header, message.content.to_string().as_bytes())?;
-    }
-    file.finish()?;
-    Ok(file.into_inner().into_inner())
 }

@@ -1,0 +1,80 @@
+//! What the thrust follows: the collective command, the motors one by one, or the rotors.
+
+use crate::base::stats::quantile;
+use crate::flight::series::held;
+use crate::insight::prepare::data::{Chosen, Data};
+use crate::insight::prepare::flight::PreparedFlight;
+use crate::insight::prepare::lag::lagged;
+use crate::insight::prepare::rotors::columns;
+
+/// One flight's commands to whatever lifts it, each -1 to 1.
+struct FlightInputs {
+    time_s: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+/// Commands of every flight.
+pub struct Inputs {
+    flights: Vec<FlightInputs>,
+    /// Whether they are what lifts itself, and not commands that it follows behind a lag.
+    at_once: bool,
+}
+
+impl Inputs {
+    /// The collective command.
+    pub fn command(data: &Data) -> Self {
+        let one = |flight: &PreparedFlight| {
+            let setpoint = &flight.quality.log.setpoint;
+            let column = setpoint.column(3).iter().map(|u| 2.0 * u - 1.0).collect();
+            FlightInputs { time_s: setpoint.time_s.clone(), columns: vec![column] }
+        };
+        Self { flights: data.flights.iter().map(one).collect(), at_once: false }
+    }
+
+    /// The motors' outputs; none where a flight lacks them.
+    pub fn motors(data: &Data) -> Option<Self> {
+        let one = |flight: &PreparedFlight| {
+            let motors = &flight.quality.log.motors;
+            let columns = columns(motors)?.iter().map(|m| m.iter().map(|u| 2.0 * u - 1.0).collect()).collect();
+            Some(FlightInputs { time_s: motors.time_s.clone(), columns })
+        };
+        Some(Self { flights: data.flights.iter().map(one).collect::<Option<_>>()?, at_once: false })
+    }
+
+    /// The rotors' speeds, of which `scale` (s/rad) makes 0 to 1; none where a flight lacks them.
+    pub fn speeds(data: &Data, scale: f64) -> Option<Self> {
+        let one = |flight: &PreparedFlight| {
+            let rotors = &flight.quality.log.rotors;
+            let columns = columns(rotors)?;
+            let columns = columns.iter().map(|w| w.iter().map(|w| 2.0 * w * scale - 1.0).collect());
+            Some(FlightInputs { time_s: rotors.time_s.clone(), columns: columns.collect() })
+        };
+        Some(Self { flights: data.flights.iter().map(one).collect::<Option<_>>()?, at_once: true })
+    }
+
+    /// Whether there is a lag to find.
+    pub fn lags(&self) -> bool {
+        !self.at_once
+    }
+
+    /// Each command of `flight` on its IMU's clock, behind a lag of `tau` seconds where there is one.
+    pub fn at(&self, flight: usize, time: &[f64], tau: f64) -> Vec<Vec<f64>> {
+        let FlightInputs { time_s, columns } = &self.flights[flight];
+        let one = |column: &Vec<f64>| {
+            if self.at_once { held(time_s, column, time) } else { lagged(time_s, column, time, tau, 0.0) }
+        };
+        columns.iter().map(one).collect()
+    }
+
+    /// 1 and 99 % of the mean command of the chosen samples, -1..1.
+    pub fn flown(&self, data: &Data, chosen: &Chosen, tau: f64) -> [f64; 2] {
+        let mean = |(f, flight): (usize, &PreparedFlight)| {
+            let all = self.at(f, &flight.time, tau);
+            (0..flight.time.len()).map(|i| all.iter().map(|x| x[i]).sum::<f64>() / all.len() as f64).collect()
+        };
+        let signals: Vec<Vec<f64>> = data.flights.iter().enumerate().map(mean).collect();
+        let mut mean = Data::pick(&signals, chosen);
+        mean.retain(|u| u.is_finite());
+        [0.01, 0.99].map(|q| quantile(&mean, q))
+    }
+}

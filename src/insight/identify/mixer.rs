@@ -1,0 +1,78 @@
+//! From the collective command to the mean motor output: what a flight controller's mixer makes of it, beside what it
+//! adds for rates, boosts and compensates.
+
+use super::rates::TAUS_S;
+use super::solve::{Solution, Unknown, solve};
+use crate::base::stats::{Score, mean};
+use crate::flight::series::held;
+use crate::insight::estimate::range::TIME_CONSTANT_S;
+use crate::insight::prepare::data::{Data, DataPart};
+use crate::insight::prepare::flight::PreparedFlight;
+use crate::insight::prepare::rotors::columns;
+use crate::model::vehicle::identified::RotorChain;
+
+/// Order of the unknowns: lag (s), output at no command, gain, change of the gain (1/V).
+const LAG: usize = 0;
+const ZERO: usize = 1;
+const GAIN: usize = 2;
+const BY_VOLTAGE: usize = 3;
+
+/// What was found.
+pub struct Mixer {
+    pub chain: RotorChain,
+    pub solution: Solution,
+    /// Of the mean motor output, 0..1, on the same samples.
+    pub score: Score,
+}
+
+/// Fits the mean motor output to the collective command. `None` where a flight lacks either, or where the command does
+/// not reach the motors. What the mixer moves for rates is taken for noise that outliers do not rule.
+pub fn fit(data: &Data, part: DataPart, by_voltage: bool) -> Option<Mixer> {
+    let outputs = data.flights.iter().map(output).collect::<Option<Vec<_>>>()?;
+    let chosen = data.choose(part, |f, i| outputs[f][i].is_finite() && data.flights[f].time[i].is_finite());
+    let voltage = |f: &PreparedFlight| if by_voltage { f.voltage.clone() } else { vec![0.0; f.time.len()] };
+    let volts = Data::pick(&data.signals(voltage), &chosen);
+    let middle = mean(&volts);
+    let measured = Data::pick(&outputs, &chosen);
+    let command = |lag: f64| Data::pick(&data.signals(|flight| flight.response(3, lag, 0.0)), &chosen);
+    let first = command(TAUS_S[0]);
+    if first.is_empty() || first.iter().any(|u| !u.is_finite()) || middle.is_nan() {
+        return None;
+    }
+    let one = |x: &[f64], u: f64, v: f64| x[ZERO] + (x[GAIN] + x[BY_VOLTAGE] * (v - middle)) * u;
+    let predicted =
+        |x: &[f64]| -> Vec<f64> { command(x[LAG]).iter().zip(&volts).map(|(&u, &v)| one(x, u, v)).collect() };
+    let residuals = |x: &[f64]| vec![predicted(x).iter().zip(&measured).map(|(p, m)| p - m).collect::<Vec<f64>>()];
+    let free = |start: f64, low: f64, high: f64| Unknown { start, low, high, step: 1e-3, linear: true };
+    let most = if by_voltage { 1.0 } else { 0.0 };
+    let unknowns = [
+        Unknown { start: 0.005, low: TIME_CONSTANT_S[0], high: TIME_CONSTANT_S[1], step: 1e-4, linear: false },
+        free(0.0, -1.0, 1.0),
+        free(1.0, 0.02, 5.0),
+        free(0.0, -most, most),
+    ];
+    let solution = solve(&unknowns[..if by_voltage { 4 } else { 3 }], &data.blocks(&chosen), &|x| {
+        residuals(&[x[LAG], x[ZERO], x[GAIN], x.get(BY_VOLTAGE).copied().unwrap_or(0.0)])
+    })?;
+    let x = &solution.values;
+    let x = [x[LAG], x[ZERO], x[GAIN], x.get(BY_VOLTAGE).copied().unwrap_or(0.0)];
+    let score = Score::of(&measured, &predicted(&x));
+    let chain = RotorChain {
+        motor_offset: x[ZERO],
+        motor_gain: x[GAIN],
+        motor_gain_per_v: x[BY_VOLTAGE],
+        motor_at_v: middle,
+        command_lag_s: Some(if solution.at_bound[LAG] { 0.0 } else { x[LAG] }),
+        ..RotorChain::DIRECT
+    };
+    (score.r2 > 0.0 && !solution.at_bound[GAIN]).then_some(Mixer { chain, solution, score })
+}
+
+/// Mean motor output on the IMU's clock, 0..1.
+fn output(flight: &PreparedFlight) -> Option<Vec<f64>> {
+    let motors = &flight.quality.log.motors;
+    let columns = columns(motors)?;
+    let mean = |i: usize| columns.iter().map(|m| m[i]).sum::<f64>() / columns.len() as f64;
+    let means: Vec<f64> = (0..motors.len()).map(mean).collect();
+    Some(held(&motors.time_s, &means, &flight.time))
+}

@@ -1,0 +1,107 @@
+//! A vehicle under a flight controller whose mixer moves, boosts and compensates the collective command, identified
+//! from what its motors were sent.
+
+use crate::truth::controlled::{Controlled, fly};
+use racer::flight::Log;
+use racer::insight::identify::result::Identification;
+use racer::insight::identify::{IdentifyOptions, identify};
+use racer::insight::predict::{PredictOptions, predict};
+use racer::insight::prepare::data::{Data, DataPart};
+use racer::insight::quality::check;
+use racer::model::thrust::specific_thrust;
+use racer::model::vehicle::Vehicle;
+use racer::model::vehicle::identified::ThrustSource;
+
+const SECONDS: f64 = 150.0;
+/// Of full thrust.
+const LARGEST_ERROR: f64 = 0.02;
+
+fn options() -> IdentifyOptions {
+    IdentifyOptions::new(Vehicle::load("seed_class").unwrap())
+}
+
+fn found(log: &Log) -> Identification {
+    identify(vec![check(log)], &options(), &mut |_, _| ())
+}
+
+/// Largest error of the thrust between two shares of the command, over the pack, as a share of full thrust.
+fn error(truth: &Controlled, c: &[f64; 6], from: f64, to: f64, wanted: &dyn Fn(f64, f64) -> f64) -> f64 {
+    let ends = [truth.full_v, truth.full_v + SECONDS * truth.rate_v_s];
+    let mut worst: f64 = 0.0;
+    for k in 0..=40 {
+        let share = from + (to - from) * f64::from(k) / 40.0;
+        for v in ends {
+            worst = worst.max((specific_thrust(c, 2.0 * share - 1.0, v) - wanted(share, v)).abs());
+        }
+    }
+    worst / truth.thrust(1.0, truth.full_v)
+}
+
+#[test]
+fn the_rotors_are_found_behind_a_mixer() {
+    let truth = Controlled::racer();
+    for speeds in [false, true] {
+        let log = fly(&truth, 5, SECONDS, speeds);
+        let found = found(&log);
+        let words = &found.thrust;
+        assert_eq!(words.source, if speeds { ThrustSource::Speeds } else { ThrustSource::Motors });
+        let lag = words.rotor_lag_s.value.unwrap();
+        assert!((lag / truth.rotor_lag - 1.0).abs() < 0.15, "rotor lag {lag}, in truth {}", truth.rotor_lag);
+        let [from, to] = words.flown_throttle.unwrap();
+        assert!(to > 0.6, "flown to {to}");
+        let over_motors = words.over_motors_n.unwrap();
+        let [low, high] = [from, to].map(|share| truth.output(share, truth.full_v));
+        let off = error(&truth, &over_motors, low, high, &|m, v| truth.thrust(m, v));
+        assert!(off < LARGEST_ERROR, "speeds {speeds}: over the motors' outputs {off:.4} of full thrust");
+        let over_command = found.vehicle.thrust_n;
+        let wanted = |share: f64, v: f64| truth.thrust(truth.output(share, v), v);
+        let off = error(&truth, &over_command, from, to, &wanted);
+        assert!(off < LARGEST_ERROR, "speeds {speeds}: over the command {off:.4} of full thrust");
+        let identified = found.vehicle.identified.as_ref().unwrap();
+        let chain = identified.rotors.unwrap();
+        if speeds {
+            let k = chain.thrust_n_per_speed_squared.unwrap() / (4.0 * truth.thrust_per_square);
+            assert!((k - 1.0).abs() < 0.01, "k is {k} of the true one");
+        }
+        assert!(found.response[3].r2.unwrap() > 0.97, "{:?}", found.response[3]);
+        println!("speeds {speeds}: rotor lag {:.1} ms, over motors and command {off:.4}", 1e3 * lag);
+    }
+}
+
+#[test]
+fn the_command_alone_tells_less() {
+    let truth = Controlled::racer();
+    let mut log = fly(&truth, 5, 90.0, false);
+    let with = found(&log).response[3].r2.unwrap();
+    log.motors = Default::default();
+    let found = found(&log);
+    assert_eq!(found.thrust.source, ThrustSource::Command);
+    assert!(found.thrust.rotor_lag_s.value.is_none() && found.vehicle.identified.unwrap().rotors.is_none());
+    let without = found.response[3].r2.unwrap();
+    assert!(without < with, "R2 {without}, with motor outputs {with}");
+}
+
+#[test]
+fn a_prediction_gives_the_figures_of_an_identification() {
+    let log = fly(&Controlled::racer(), 6, 90.0, false);
+    let quality = check(&log);
+    let found = identify(vec![quality.clone()], &options(), &mut |_, _| ());
+    // By way of a file.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("validated.toml");
+    std::fs::write(&path, toml::to_string(&found.validated).unwrap()).unwrap();
+    let vehicle = Vehicle::load(path.to_str().unwrap()).unwrap();
+    let options = PredictOptions { part: DataPart::Validation, rate_cutoff_hz: 100.0, force_cutoff_hz: 30.0 };
+    let prediction = predict(&Data::new(vec![quality]), &[&vehicle], &options);
+    for (k, name) in ["roll rate", "pitch rate", "yaw rate", "specific force z"].iter().enumerate() {
+        let score = prediction.channels.iter().find(|c| c.name == *name).unwrap().score(0);
+        let response = &found.response[k];
+        assert_eq!(response.rmse.unwrap().to_bits(), score.rmse.to_bits(), "{name}");
+        assert_eq!(response.mae.unwrap().to_bits(), score.mae.to_bits(), "{name}");
+        assert_eq!(response.r2.unwrap().to_bits(), score.r2.to_bits(), "{name}");
+        assert_eq!(response.n_validation, score.n);
+    }
+    let voltage = prediction.channels.iter().find(|c| c.name == "voltage").unwrap().score(0);
+    assert_eq!(found.battery.score, Some(voltage));
+    assert!(prediction.ahead[0].iter().all(|h| h.starts > 0 && h.attitude_deg > 0.0), "{:?}", prediction.ahead);
+}
