@@ -51,8 +51,8 @@ enum Part {
 }
 
 const HELP: &str = "Columns of the CSV file: log, time_s, channel, unit, measured, predicted, residual; of a second \
-vehicle predicted_2 and residual_2. The residual is what was measured less what was predicted. The MCAP file has a topic each \
-channel with the same numbers.
+vehicle predicted_2 and residual_2. The residual is what was measured less what was predicted. The MCAP file has a \
+topic each channel with the same numbers.
 
 The open-loop table says how far the simulation is off a moment after it was where the flight was, with nothing but \
 the logged commands.

@@ -16,7 +16,7 @@ fn json(text: &str) -> Value {
 fn a_prediction_and_its_files() {
     let folder = tempfile::tempdir().unwrap();
     let run = |args: &str| racer(folder.path(), args);
-    assert_eq!(run("fly --pilot --seconds 60 --out flight.mcap").code, 0);
+    assert_eq!(run("fly --pilot --seconds 80 --out flight.mcap").code, 0);
     let ran = run("identify flight.mcap --out mine.toml --validated part.toml --json mine.json");
     assert_eq!(ran.code, 0, "{}", ran.err);
     assert!(ran.out.contains("hovers at") && ran.out.contains("full throttle"), "{}", ran.out);

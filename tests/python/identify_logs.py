@@ -3,9 +3,9 @@
 
     python tests/python/identify_logs.py target/release/racer OUT.csv LOG...
 
-Every log is one flight of its own vehicle. A line each: the log, the exit code, what the thrust was identified from, R2 of
-roll, pitch, yaw and thrust on the validation part, which numbers the base vehicle lent, why nothing was written, and
-whether `racer train --steps 40000` accepts the vehicle.
+Every log is one flight of its own vehicle. A line each: the log, the exit code, what the thrust was
+identified from, R2 of roll, pitch, yaw and thrust on the validation part, which numbers the base
+vehicle lent, why nothing was written, and whether `racer train --steps 40000` accepts the vehicle.
 """
 
 import csv
@@ -16,7 +16,8 @@ import tempfile
 from pathlib import Path
 
 HEADER = ["log", "exit", "written", "thrust_from", "r2_roll", "r2_pitch", "r2_yaw", "r2_thrust", "lent", "why", "trains"]
-TRAIN = "--steps 40000 --set eval.agents=4 --set budget.snapshots=1 --set ppo.environments=64 --set ppo.rollout=16".split()
+SETTINGS = ["eval.agents=4", "budget.snapshots=1", "ppo.environments=64", "ppo.rollout=16", "ppo.minibatches=2"]
+TRAIN = ["--steps", "40000"] + [word for setting in SETTINGS for word in ("--set", setting)]
 
 
 def run(*args, cwd):

@@ -170,7 +170,8 @@ fn delay(out: &mut Identification, data: &Data, axis: usize, options: &IdentifyO
     let [plain, better] = [&plain, &late].map(|fit| rate.score(DataPart::Validation, fit));
     if late.values[3] > REMARKED_DELAY_S.get() && better.rmse < REMARKED_ERROR.get() * plain.rmse {
         out.remark(format!(
-            "{}: a pure delay of {:.0} ms before a lag of {:.0} ms would bring R2 from {:.3} to {:.3}; the model has none",
+            "{}: a pure delay of {:.0} ms before a lag of {:.0} ms would bring R2 from {:.3} to {:.3}; the model has \
+             none",
             AXES[axis],
             1e3 * late.values[3],
             1e3 * late.values[0],
@@ -316,7 +317,8 @@ fn say_what_matters(out: &mut Identification, data: &Data) {
         let base = out.vehicle.identified.as_ref().map_or("", |i| &i.base).to_string();
         let [r, p, y] = full.map(f64::to_degrees);
         let mut text = format!(
-            "full-stick rates are those of {base} ({r:.0}, {p:.0}, {y:.0} deg/s): give --full-rates as they are configured"
+            "full-stick rates are those of {base} ({r:.0}, {p:.0}, {y:.0} deg/s): give --full-rates as they are \
+             configured"
         );
         let beyond = (0..3).any(|k| most[k] > BEYOND_FULL_STICK.get() * full[k]);
         if beyond {
