@@ -13,8 +13,8 @@ use racer::model::vehicle::Vehicle;
 use racer::model::vehicle::identified::ThrustSource;
 
 const SECONDS: f64 = 150.0;
-/// Of full thrust, in the middle of the pack; and at its ends, where a thrust that goes with the square of the voltage is
-/// no straight line times one of the command (the compact model's Eq. 7).
+/// Of full thrust, in the middle of the pack; and at its ends, where a thrust that goes with the square of the voltage
+/// is no straight line times one of the command (the compact model's Eq. 7).
 const LARGEST_ERROR: f64 = 0.02;
 const LARGEST_AT_ENDS: f64 = 0.05;
 
