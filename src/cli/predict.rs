@@ -5,6 +5,7 @@ use crate::base::check::{BadInput, Check};
 use crate::base::encode;
 use crate::base::error::Result;
 use crate::base::fsio::Reserved;
+use crate::flight::Options;
 use crate::insight::identify::{FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ};
 use crate::insight::predict::{PredictOptions, Prediction, predict};
 use crate::insight::prepare::data::{Data, DataPart};
@@ -35,6 +36,9 @@ pub struct Args {
     /// What the logs' fields mean: a mapping's name or file [default: the format's own, or the one that fits]
     #[arg(long, value_name = "NAME|FILE")]
     mapping: Option<String>,
+    /// Which flight of a file with several, counted from 1 [default: the longest]
+    #[arg(long, value_name = "N")]
+    flight: Option<usize>,
     /// Cut-off of the zero-phase filter on measured and predicted rates, Hz
     #[arg(long, value_name = "HZ", default_value_t = RATE_CUTOFF_HZ, allow_negative_numbers = true)]
     rate_cutoff: f64,
@@ -91,7 +95,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let vehicles = args.vehicles.iter().map(|name| Vehicle::load(name)).collect::<std::result::Result<Vec<_>, _>>()?;
     let options = options(args)?;
     let bar = progress::bar();
-    let checked = logs::read(&args.logs, args.mapping.as_deref(), &bar)?;
+    let checked = logs::read(&args.logs, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
     bar.set_message("predicting");
     let damaged = logs::damaged(&checked);
     let data = Data::new(checked);
