@@ -100,6 +100,12 @@ impl Quality {
     }
 }
 
+/// The finding where nothing is left to work with.
+fn no_flight() -> LogFinding {
+    let what = format!("no {} s of usable flight in one piece", SHORTEST_FLIGHT_S.get());
+    LogFinding::new(Severity::Problem, "no_flight", "imu", what, "nothing can be identified")
+}
+
 /// A finding where the vehicle is none that the models are of.
 fn of_another_kind(kind: VehicleKind) -> Option<LogFinding> {
     let what = format!("the vehicle is a {}", kind.name().replace('_', " "));
@@ -140,6 +146,9 @@ pub fn check(log: &Log) -> Quality {
     let times = &log.imu.time_s;
     let mut usable = spans::without([times[0], times[times.len() - 1]], &holes);
     usable.retain(|span| span[1] - span[0] >= SHORTEST_FLIGHT_S.get());
+    if usable.is_empty() {
+        findings.push(no_flight());
+    }
     signs::judge(&log, &usable, &mut findings);
     mounting::find(&log, &usable, &mut findings);
     outliers::count(&log, &mut findings);
