@@ -44,7 +44,7 @@ pub(super) use operator;
 /// and words `W`.
 macro_rules! block {
     ($block:ident, $words:ident, $truth:ident, $n:tt registers, fuses: $fuses:literal,
-     tile: $rows:literal x $blocks:literal, compiled: #[$compiled:meta]) => {
+     tile: $rows:literal x $blocks:literal, features: $features:literal) => {
         use $crate::base::lane::block::{operator, registers};
         use $crate::base::lane::{Bits, Lane, Lane32, Mask, Real, Single, Tiled, Word, math};
 
@@ -108,7 +108,8 @@ macro_rules! block {
             const FUSES: bool = $fuses;
             #[inline(always)]
             fn vectorize<X>(f: impl FnOnce() -> X) -> X {
-                #[$compiled]
+                #[inline(never)]
+                #[target_feature(enable = $features)]
                 fn inner<X>(f: impl FnOnce() -> X) -> X {
                     f()
                 }

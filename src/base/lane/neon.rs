@@ -9,10 +9,10 @@ type R = float32x4_t;
 type W = uint32x4_t;
 type T = uint32x4_t;
 
-// 24 accumulators of 32 registers that hold a quarter of a block each. A function of its own, as other blocks have it.
+// 24 accumulators of 32 registers that hold a quarter of a block each.
 block!(
     Neon, NeonWords, NeonTruth, 4 registers, fuses: true, tile: 3 x 2,
-    compiled: #[inline(never)]
+    features: "neon"
 );
 
 operations! {

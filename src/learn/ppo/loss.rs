@@ -85,7 +85,11 @@ pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
 #[inline(always)]
 fn squashes<L: Lane>(w: &Weights, s: &Samples<L>) -> [Squash<L>; ACTIONS] {
     if w.squashed {
-        build!(|k| squash(s.mean[k], s.log_std[k].exp()))
+        // Apart, so that its quadrature takes no registers where it is not wanted.
+        L::vectorize(
+            #[inline(always)]
+            || build!(|k| squash(s.mean[k], s.log_std[k].exp())),
+        )
     } else {
         let zero = L::zero();
         [Squash { value: zero, d_mean: zero, d_log_std: zero }; ACTIONS]

@@ -11,7 +11,7 @@ type T = __m256;
 // 12 accumulators of 16 registers that hold half a block each.
 block!(
     Avx2, Avx2Words, Avx2Truth, 2 registers, fuses: true, tile: 3 x 2,
-    compiled: #[target_feature(enable = "avx2,fma")]
+    features: "avx2,fma"
 );
 
 operations! {

@@ -11,7 +11,7 @@ type T = __mmask16;
 // 24 accumulators of 32 registers that hold a block each.
 block!(
     Avx512, Avx512Words, Avx512Truth, 1 registers, fuses: true, tile: 6 x 4,
-    compiled: #[target_feature(enable = "avx512f,avx512dq,avx2,fma")]
+    features: "avx512f,avx512dq,avx2,fma"
 );
 
 operations! {

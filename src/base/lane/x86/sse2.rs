@@ -9,10 +9,10 @@ type R = __m128;
 type W = __m128i;
 type T = __m128;
 
-// 8 accumulators of 16 registers that hold a quarter of a block each. A function of its own, as wider blocks have it.
+// 8 accumulators of 16 registers that hold a quarter of a block each.
 block!(
     Sse2, Sse2Words, Sse2Truth, 4 registers, fuses: false, tile: 1 x 2,
-    compiled: #[inline(never)]
+    features: "sse2"
 );
 
 operations! {
