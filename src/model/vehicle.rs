@@ -152,7 +152,7 @@ impl Vehicle {
     }
 
     /// Thrust must grow with the command, from nothing or more, and be able to lift the vehicle. Whatever keeps the
-    /// [`limits`](crate::model::thrust::shape::limits) passes.
+    /// `limits` of `model/thrust/shape.rs` passes.
     pub fn check_thrust(&self) -> Result<(), Invalid> {
         let finite = self.thrust_n.iter().all(|c| c.is_finite());
         let found = format!("{:?}", self.thrust_n);
