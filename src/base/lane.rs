@@ -9,10 +9,12 @@
 //! that is compiled on its own does not know which instructions it may use.
 
 mod block;
+mod level;
 pub mod math;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod portable;
+mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -20,6 +22,7 @@ use std::fmt;
 use std::mem::MaybeUninit;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
+pub use level::{Kernel, Level, dispatch, fused};
 pub use portable::Portable;
 
 /// Lanes in a block, on every CPU, so that results do not depend on the vector length.
@@ -293,202 +296,5 @@ impl Word for u32 {
     #[inline(always)]
     fn shift_right<const N: u32>(self) -> Self {
         self >> N
-    }
-}
-
-/// Work to be run on the best blocks this CPU has.
-pub trait Kernel {
-    type Output;
-    /// The body; mark it `#[inline(always)]`.
-    fn run<L: Lane32>(self) -> Self::Output;
-}
-
-/// An implementation of the 16-lane block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// One 512-bit register a block.
-    Avx512,
-    /// Two 256-bit registers a block, fused multiply-add.
-    Avx2,
-    /// Four 128-bit registers of a 64-bit Arm a block, fused multiply-add.
-    Neon,
-    /// Four 128-bit registers a block, which every x86-64 has; elsewhere what the compiler makes of a loop over 16
-    /// numbers. Multiply-add is not fused.
-    Portable,
-}
-
-impl Level {
-    /// All levels this CPU can run, best first.
-    pub fn available() -> Vec<Level> {
-        [Level::Avx512, Level::Avx2, Level::Neon, Level::Portable].into_iter().filter(|l| l.is_available()).collect()
-    }
-
-    /// The best level of this CPU.
-    pub fn best() -> Level {
-        Level::available()[0]
-    }
-
-    fn is_available(self) -> bool {
-        match self {
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx512 => x86::has_avx512(),
-            #[cfg(target_arch = "x86_64")]
-            Level::Avx2 => x86::has_avx2(),
-            #[cfg(not(target_arch = "x86_64"))]
-            Level::Avx512 | Level::Avx2 => false,
-            Level::Neon => cfg!(target_arch = "aarch64"),
-            Level::Portable => true,
-        }
-    }
-}
-
-impl fmt::Display for Level {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Level::Avx512 => "AVX-512",
-            Level::Avx2 => "AVX2",
-            Level::Neon => "NEON",
-            Level::Portable => "portable",
-        })
-    }
-}
-
-/// Runs `kernel` at `level`.
-///
-/// # Panics
-/// If this CPU does not have `level`.
-pub fn dispatch<K: Kernel>(level: Level, kernel: K) -> K::Output {
-    assert!(level.is_available(), "this CPU does not have {level}");
-    match level {
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx512 => x86::Avx512::vectorize(
-            #[inline(always)]
-            || kernel.run::<x86::Avx512>(),
-        ),
-        #[cfg(target_arch = "x86_64")]
-        Level::Avx2 => x86::Avx2::vectorize(
-            #[inline(always)]
-            || kernel.run::<x86::Avx2>(),
-        ),
-        #[cfg(target_arch = "x86_64")]
-        Level::Portable => x86::Sse2::vectorize(
-            #[inline(always)]
-            || kernel.run::<x86::Sse2>(),
-        ),
-        #[cfg(target_arch = "aarch64")]
-        Level::Neon => neon::Neon::vectorize(
-            #[inline(always)]
-            || kernel.run::<neon::Neon>(),
-        ),
-        #[cfg(target_arch = "x86_64")]
-        Level::Neon => unreachable!("not available"),
-        #[cfg(not(target_arch = "x86_64"))]
-        _ => kernel.run::<Portable<f32>>(),
-    }
-}
-
-/// Runs `work` on scalars where a fused multiply-add is one instruction, if this CPU has it; elsewhere it is a call of
-/// a function, with the same result.
-pub fn fused<T>(work: impl FnOnce() -> T) -> T {
-    #[cfg(target_arch = "x86_64")]
-    if x86::has_avx2() {
-        return x86::Avx2::vectorize(work);
-    }
-    work()
-}
-
-macro_rules! scalar {
-    ($t:ty, $fuses:literal, $exp:expr, $ln:expr, $tanh:expr, $tanh_pair:expr, $sin_cos:expr) => {
-        impl Real for $t {
-            type Mask = bool;
-            const FUSES: bool = $fuses;
-            #[inline(always)]
-            fn of(x: f64) -> Self {
-                x as $t
-            }
-            #[inline(always)]
-            fn mul_add(self, a: Self, b: Self) -> Self {
-                <$t>::mul_add(self, a, b)
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                <$t>::sqrt(self)
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                <$t>::abs(self)
-            }
-            #[inline(always)]
-            fn min(self, b: Self) -> Self {
-                if self < b { self } else { b }
-            }
-            #[inline(always)]
-            fn max(self, b: Self) -> Self {
-                if self > b { self } else { b }
-            }
-            #[inline(always)]
-            fn lt(self, b: Self) -> bool {
-                self < b
-            }
-            #[inline(always)]
-            fn le(self, b: Self) -> bool {
-                self <= b
-            }
-            #[inline(always)]
-            fn select(mask: bool, yes: Self, no: Self) -> Self {
-                if mask { yes } else { no }
-            }
-            #[inline(always)]
-            fn exp(self) -> Self {
-                $exp(self)
-            }
-            #[inline(always)]
-            fn ln(self) -> Self {
-                $ln(self)
-            }
-            #[inline(always)]
-            fn tanh(self) -> Self {
-                $tanh(self)
-            }
-            #[inline(always)]
-            fn tanh_pair(pair: [Self; 2]) -> [Self; 2] {
-                $tanh_pair(pair)
-            }
-            #[inline(always)]
-            fn sin_cos_turns(self) -> (Self, Self) {
-                $sin_cos(self)
-            }
-        }
-    };
-}
-scalar!(f32, true, math::exp, math::ln, math::tanh, math::tanh_pair, math::sin_cos_turns);
-scalar!(f64, true, f64::exp, f64::ln, f64::tanh, |x: [f64; 2]| x.map(f64::tanh), |x: f64| (x * std::f64::consts::TAU)
-    .sin_cos());
-
-impl Single for f32 {
-    #[inline(always)]
-    fn round(self) -> Self {
-        self.round_ties_even()
-    }
-    #[inline(always)]
-    fn pow2(self) -> Self {
-        f32::from_bits(((self as i32 + 127) as u32) << 23)
-    }
-    #[inline(always)]
-    fn split_exponent(self) -> (Self, Self) {
-        let bits = self.to_bits();
-        let m = f32::from_bits((bits & 0x007f_ffff) | 0x3f00_0000);
-        (m, (bits >> 23) as f32 - 126.0)
-    }
-}
-
-impl Mask for bool {
-    #[inline(always)]
-    fn bits(self) -> u32 {
-        self as u32
-    }
-    #[inline(always)]
-    fn from_bits(bits: u32) -> Self {
-        bits & 1 == 1
     }
 }
