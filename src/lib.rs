@@ -65,7 +65,7 @@ pub use flight::sensors::SensorConfig;
 pub use insight::diagnose::Diagnosed;
 pub use insight::diagnose::finding::{Diagnosis, Status, Verdict};
 pub use insight::identify::IdentifyOptions;
-pub use insight::identify::estimate::Estimate;
+pub use insight::identify::estimate::Estimated;
 pub use insight::identify::result::Identification;
 pub use insight::quality::{Quality, Severity, check};
 pub use learn::ppo::train::Flow;

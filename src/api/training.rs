@@ -11,7 +11,7 @@ use crate::present::run::metrics::LogRow;
 use crate::present::train::{Ended, TrainingWatch, evaluate, make, room, told};
 use crate::race::config::Setup;
 use crate::race::env::Race;
-use crate::race::env::tally::Tally;
+use crate::race::env::tally::RaceTally;
 use crate::race::eval::Report;
 use crate::race::train;
 use std::path::Path;
@@ -31,7 +31,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    fn new(iteration: &Iteration<Tally>, row: LogRow) -> Self {
+    fn new(iteration: &Iteration<RaceTally>, row: LogRow) -> Self {
         let &Iteration { index, share, steps, seconds, .. } = iteration;
         Self { share, updates: index, steps, seconds, row }
     }
@@ -91,7 +91,7 @@ impl<F: FnMut(&Progress) -> Flow> Closure<F> {
 }
 
 impl<F: FnMut(&Progress) -> Flow> Observer<Race> for Closure<F> {
-    fn iteration(&mut self, iteration: &Iteration<Tally>) -> Flow {
+    fn iteration(&mut self, iteration: &Iteration<RaceTally>) -> Flow {
         let row = LogRow::new(iteration, iteration.seconds - self.last_s);
         self.last_s = iteration.seconds;
         (self.observer)(&Progress::new(iteration, row))
@@ -99,7 +99,7 @@ impl<F: FnMut(&Progress) -> Flow> Observer<Race> for Closure<F> {
 }
 
 impl<F: FnMut(&Progress) -> Flow + Send> TrainingWatch for Closure<F> {
-    fn iteration(&mut self, iteration: &Iteration<Tally>, row: &LogRow) {
+    fn iteration(&mut self, iteration: &Iteration<RaceTally>, row: &LogRow) {
         self.flow = (self.observer)(&Progress::new(iteration, row.clone()));
     }
 

@@ -11,7 +11,7 @@ use std::convert::Infallible;
 /// What a number is drawn for; streams never share numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub enum Stream {
+pub enum RngStream {
     /// Exploration of the policy.
     Action = 1,
     /// Noise on observations and on the applied action.
@@ -67,19 +67,19 @@ impl Philox {
 
     /// Four words for each environment of a block at its own step; `index` tells further draws of the step apart.
     #[inline(always)]
-    pub fn block<B: Bits>(&self, stream: Stream, environments: B, step: u32, index: u32) -> [B; 4] {
+    pub fn block<B: Bits>(&self, stream: RngStream, environments: B, step: u32, index: u32) -> [B; 4] {
         self.words([B::splat(index), environments, B::splat(step), B::splat(stream as u32)])
     }
 
     /// As [`Philox::block`] with seven rounds, the fewest that pass every test of randomness (Table 2 of the paper):
     /// for noise of sensors, of which every step takes much.
     #[inline(always)]
-    pub fn noise<B: Bits>(&self, stream: Stream, environments: B, step: u32, index: u32) -> [B; 4] {
+    pub fn noise<B: Bits>(&self, stream: RngStream, environments: B, step: u32, index: u32) -> [B; 4] {
         self.rounds::<B, 7>([B::splat(index), environments, B::splat(step), B::splat(stream as u32)])
     }
 
     /// A sequence of numbers for one environment.
-    pub fn sequence(&self, stream: Stream, environment: u32, step: u32) -> Sequence {
+    pub fn sequence(&self, stream: RngStream, environment: u32, step: u32) -> Sequence {
         Sequence(BlockRng::new(Counter { rng: *self, next: [0, environment, step, stream as u32] }))
     }
 }
@@ -204,10 +204,10 @@ mod tests {
     #[test]
     fn sequences_are_the_words_in_order() {
         let philox = Philox::new(7);
-        let words: Vec<u32> = (0..3u32).flat_map(|i| philox.words([i, 5, 9, Stream::Reset as u32])).collect();
-        let mut one = philox.sequence(Stream::Reset, 5, 9);
+        let words: Vec<u32> = (0..3u32).flat_map(|i| philox.words([i, 5, 9, RngStream::Reset as u32])).collect();
+        let mut one = philox.sequence(RngStream::Reset, 5, 9);
         assert_eq!((0..12).map(|_| one.next_u32()).collect::<Vec<_>>(), words);
-        let mut two = philox.sequence(Stream::Reset, 5, 9);
+        let mut two = philox.sequence(RngStream::Reset, 5, 9);
         assert_eq!(two.next_u32(), words[0]);
         assert_eq!((0..5).map(|_| two.next_u64()).collect::<Vec<_>>(), {
             let pairs = words[1..11].chunks(2).map(|w| u64::from(w[0]) | u64::from(w[1]) << 32);
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn scalar_distributions_have_their_moments() {
-        let mut rng = Philox::new(11).sequence(Stream::Reset, 0, 0);
+        let mut rng = Philox::new(11).sequence(RngStream::Reset, 0, 0);
         let n = 200_000;
         let moments = |x: Vec<f64>| [1, 2, 3, 4].map(|k| x.iter().map(|x| x.powi(k)).sum::<f64>() / x.len() as f64);
         // Five standard errors of each.
@@ -237,12 +237,12 @@ mod tests {
         fn run<L: Lane32>(self) -> [f64; 4] {
             let rng = Philox::new(7);
             let ids = L::Bits::from_array(std::array::from_fn(|i| i as u32));
-            let scalar = rng.words([2u32, 5, 3, Stream::Noise as u32]);
-            assert_eq!(rng.block(Stream::Noise, ids, 3, 2).map(|w| w.to_array()[5]), scalar);
+            let scalar = rng.words([2u32, 5, 3, RngStream::Noise as u32]);
+            assert_eq!(rng.block(RngStream::Noise, ids, 3, 2).map(|w| w.to_array()[5]), scalar);
             let mut sums = [0.0; 4];
             let n = 20_000;
             for step in 0..n {
-                let [a, b, c, _] = rng.block(Stream::Action, ids, step, 0);
+                let [a, b, c, _] = rng.block(RngStream::Action, ids, step, 0);
                 let (x, y) = normals::<L>(a, b);
                 let (z, w) = coarse_normals::<L>(c);
                 for v in [x, y, z, w] {

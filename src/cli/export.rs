@@ -3,7 +3,7 @@
 use super::{CommandEnd, tell};
 use crate::base::check::BadInput;
 use crate::base::fsio;
-use crate::present::export::{Exported, Format};
+use crate::present::export::{ExportFormat, Exported};
 use crate::present::run::{self, FoundPolicy};
 use crate::race::snapshot::Snapshot;
 use clap::ValueEnum;
@@ -18,7 +18,7 @@ pub struct Args {
     policy: String,
     /// What to write
     #[arg(long, value_enum)]
-    format: Kind,
+    format: FormatName,
     /// New folder for the files [default: `export-FORMAT` in the run folder, or beside the snapshot]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -37,7 +37,7 @@ Examples:
   racer export runs/mine --format onnx --out model";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Kind {
+enum FormatName {
     /// C99 sources without allocation or library, with examples
     C,
     /// An ONNX model of the network, with everything else in its metadata
@@ -46,13 +46,13 @@ enum Kind {
     Json,
 }
 
-impl Kind {
+impl FormatName {
     /// The format, and a name for its folder.
-    fn format(self) -> (Format, &'static str) {
+    fn format(self) -> (ExportFormat, &'static str) {
         match self {
-            Kind::C => (Format::C, "export-c"),
-            Kind::Onnx => (Format::Onnx, "export-onnx"),
-            Kind::Json => (Format::Json, "export-json"),
+            FormatName::C => (ExportFormat::C, "export-c"),
+            FormatName::Onnx => (ExportFormat::Onnx, "export-onnx"),
+            FormatName::Json => (ExportFormat::Json, "export-json"),
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::base::encode;
 use crate::base::fsio::Reserved;
 use crate::flight::Options;
 use crate::insight::identify::document::{CheckedLog, IdentificationDocument};
-use crate::insight::identify::estimate::Estimate;
+use crate::insight::identify::estimate::Estimated;
 use crate::insight::identify::result::Identification;
 use crate::insight::identify::{AXES, FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ, identify, refuse};
 use crate::model::vehicle::Vehicle;
@@ -165,7 +165,7 @@ fn text(found: &Identification) -> String {
     });
     let header = ["response", "tau, ms", "RMSE", "MAE", "", "R2", "samples"];
     let response = columns::table(&header, response.collect(), 1..4);
-    let row = |(name, parameter, digits, unit): &(String, Estimate, usize, &str)| {
+    let row = |(name, parameter, digits, unit): &(String, Estimated, usize, &str)| {
         vec![name.clone(), estimate(parameter, *digits), unit.to_string()]
     };
     let values = found.parameters().iter().map(row).collect();
@@ -212,7 +212,7 @@ fn thrust(found: &Identification) -> Option<String> {
 }
 
 /// Value and interval, or why there is none.
-fn estimate(estimate: &Estimate, digits: usize) -> String {
+fn estimate(estimate: &Estimated, digits: usize) -> String {
     match (estimate.value, estimate.interval(), &estimate.why) {
         (Some(value), Some([low, high]), _) => format!("{value:.digits$} ({low:.digits$} to {high:.digits$})"),
         // Longer reasons stand below the table.

@@ -29,7 +29,7 @@ pub struct Args {
     out: Option<PathBuf>,
     /// Which of the usable samples: the first 70 %, which `racer identify` learns from, or the rest
     #[arg(long, value_enum, default_value = "all")]
-    part: Part,
+    part: FlightPart,
     /// Print JSON in place of text, with all digits
     #[arg(long)]
     json: bool,
@@ -48,7 +48,7 @@ pub struct Args {
 }
 
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Part {
+enum FlightPart {
     All,
     Training,
     Validation,
@@ -116,9 +116,9 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
 
 fn options(args: &Args) -> std::result::Result<PredictOptions, BadInput> {
     let part = match args.part {
-        Part::All => DataPart::All,
-        Part::Training => DataPart::Train,
-        Part::Validation => DataPart::Validation,
+        FlightPart::All => DataPart::All,
+        FlightPart::Training => DataPart::Train,
+        FlightPart::Validation => DataPart::Validation,
     };
     let (rate_cutoff_hz, force_cutoff_hz) = (args.rate_cutoff, args.force_cutoff);
     let base = Vehicle::load("seed_class")?;

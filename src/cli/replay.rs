@@ -88,9 +88,9 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
 }
 
 /// What is shown, a folder for it, and whether the log could be read to its end.
-type Show = (Replay, PathBuf, bool);
+type OpenedReplay = (Replay, PathBuf, bool);
 
-fn flown(args: &Args) -> anyhow::Result<Show> {
+fn flown(args: &Args) -> anyhow::Result<OpenedReplay> {
     if args.flight.is_some() {
         return Err(refuse("--flight", "a policy", "a flight log, which may hold several"));
     }
@@ -109,7 +109,7 @@ fn flown(args: &Args) -> anyhow::Result<Show> {
     Ok((shown, beside, true))
 }
 
-fn recorded(args: &Args, path: &Path) -> anyhow::Result<Show> {
+fn recorded(args: &Args, path: &Path) -> anyhow::Result<OpenedReplay> {
     for (option, given) in
         [("--vehicle", args.vehicle.is_some()), ("--seconds", args.seconds.is_some()), ("--agents", args.agents > 1)]
     {

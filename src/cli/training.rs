@@ -10,7 +10,7 @@ use crate::present::run::provenance::Provenance;
 use crate::present::run::{POLICY, Run};
 use crate::present::train::{Finished, TrainingWatch};
 use crate::race::config::Setup;
-use crate::race::env::tally::Tally;
+use crate::race::env::tally::RaceTally;
 
 /// Shows the progress, and ends the training at Ctrl-C.
 #[derive(Default)]
@@ -35,7 +35,7 @@ impl TrainingWatch for ShownTraining {
         *self = Self { progress: Some(TrainingBar::new()), last: [None; 2] };
     }
 
-    fn iteration(&mut self, iteration: &Iteration<Tally>, row: &LogRow) {
+    fn iteration(&mut self, iteration: &Iteration<RaceTally>, row: &LogRow) {
         let now = [row.get("episode/return_median"), row.get("episode/gates")];
         self.last = [now[0].or(self.last[0]), now[1].or(self.last[1])];
         let [episode_return, gates] = self.last;

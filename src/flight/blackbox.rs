@@ -24,10 +24,10 @@ mod scales;
 mod sequence;
 pub mod tally;
 
-use super::format::{Content, File, FlightSummary, Format};
+use super::format::{Content, FlightSummary, Format, LogFile};
 use super::mapping::Mapping;
 use crate::base::check::BadInput;
-use flight::Flight;
+use flight::BlackboxFlight;
 use std::collections::BTreeSet;
 
 /// How every flight begins.
@@ -41,15 +41,15 @@ impl Format for Blackbox {
         "Betaflight blackbox"
     }
 
-    fn recognises(&self, file: &File) -> bool {
+    fn recognises(&self, file: &LogFile) -> bool {
         file.start().windows(MARKER.len()).any(|window| window == MARKER) || file.ends(&[".bbl", ".bfl"])
     }
 
-    fn mapping(&self, _: &File) -> Result<(&'static str, Option<String>), BadInput> {
+    fn mapping(&self, _: &LogFile) -> Result<(&'static str, Option<String>), BadInput> {
         Ok(("betaflight", None))
     }
 
-    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
+    fn tables(&self, file: &LogFile, mapping: &Mapping) -> Result<Content, BadInput> {
         content(file.bytes, file.name, &mapping.columns(), file.flight)
     }
 
@@ -84,10 +84,13 @@ fn content(
 }
 
 /// The longest flight that can be read, and what was chosen from.
-fn longest(flights: &[&[u8]], read: impl Fn(usize, &[u8]) -> Result<Flight, BadInput>) -> Result<Content, BadInput> {
+fn longest(
+    flights: &[&[u8]],
+    read: impl Fn(usize, &[u8]) -> Result<BlackboxFlight, BadInput>,
+) -> Result<Content, BadInput> {
     /// More would only hide the rest of the message.
     const MOST: usize = 20;
-    let mut best: Option<(usize, Flight)> = None;
+    let mut best: Option<(usize, BlackboxFlight)> = None;
     let (mut failed, mut spans, mut found) = (None, Vec::new(), Vec::new());
     for (index, bytes) in flights.iter().enumerate() {
         match read(index, bytes) {

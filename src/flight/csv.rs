@@ -15,39 +15,39 @@ use std::io::Read;
 const MOST_BYTES: u64 = 1 << 30;
 
 /// A text, packed or not, counting what of the file is read.
-enum Source<'a> {
+enum TextSource<'a> {
     Plain(&'a [u8]),
     Packed(std::io::Take<MultiGzDecoder<&'a [u8]>>),
 }
 
-impl<'a> Source<'a> {
+impl<'a> TextSource<'a> {
     fn new(bytes: &'a [u8]) -> Self {
         if bytes.starts_with(&[0x1f, 0x8b]) {
-            Source::Packed(MultiGzDecoder::new(bytes).take(MOST_BYTES))
+            TextSource::Packed(MultiGzDecoder::new(bytes).take(MOST_BYTES))
         } else {
-            Source::Plain(bytes)
+            TextSource::Plain(bytes)
         }
     }
 
     /// Bytes of the file that are not read yet.
     fn left(&self) -> usize {
         match self {
-            Source::Plain(rest) => rest.len(),
-            Source::Packed(rest) => rest.get_ref().get_ref().len(),
+            TextSource::Plain(rest) => rest.len(),
+            TextSource::Packed(rest) => rest.get_ref().get_ref().len(),
         }
     }
 }
 
-impl Read for Source<'_> {
+impl Read for TextSource<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         match self {
-            Source::Plain(rest) => rest.read(buffer),
-            Source::Packed(rest) => rest.read(buffer),
+            TextSource::Plain(rest) => rest.read(buffer),
+            TextSource::Packed(rest) => rest.read(buffer),
         }
     }
 }
 
-type CsvReader<'a> = csv::Reader<Source<'a>>;
+type CsvReader<'a> = csv::Reader<TextSource<'a>>;
 
 /// The columns that the file `name` has.
 pub fn header(bytes: &[u8], name: &str) -> Result<Vec<String>, BadInput> {
@@ -76,7 +76,7 @@ pub fn table(bytes: &[u8], name: &str, wanted: &BTreeSet<&str>) -> Result<(Table
             Err(error) => break broken(error, &mut reader, bytes, name)?,
         }
     };
-    if let Source::Packed(rest) = reader.get_ref()
+    if let TextSource::Packed(rest) = reader.get_ref()
         && rest.limit() == 0
     {
         let advice = "unpack it yourself, and give a part of it";
@@ -90,7 +90,7 @@ pub fn table(bytes: &[u8], name: &str, wanted: &BTreeSet<&str>) -> Result<(Table
 fn open<'a>(bytes: &'a [u8], name: &str) -> Result<(CsvReader<'a>, Vec<String>), BadInput> {
     let delimiter = delimiter(bytes);
     let mut builder = csv::ReaderBuilder::new();
-    let mut reader = builder.trim(csv::Trim::All).delimiter(delimiter).from_reader(Source::new(bytes));
+    let mut reader = builder.trim(csv::Trim::All).delimiter(delimiter).from_reader(TextSource::new(bytes));
     let bad = |found: String| BadInput::new(name, found, "a first line that names the columns", "is it a CSV file?");
     let record = reader.byte_headers().map_err(|error| bad(error.to_string()))?;
     let header: Vec<String> = record.iter().map(|cell| String::from_utf8_lossy(cell).into_owned()).collect();
@@ -111,7 +111,7 @@ fn open<'a>(bytes: &'a [u8], name: &str) -> Result<(CsvReader<'a>, Vec<String>),
 fn delimiter(bytes: &[u8]) -> u8 {
     let mut start = Vec::new();
     // What cannot be unpacked is reported by the reading that follows.
-    let _ = Source::new(bytes).take(1 << 16).read_to_end(&mut start);
+    let _ = TextSource::new(bytes).take(1 << 16).read_to_end(&mut start);
     let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let count = |delimiter: u8| line.iter().filter(|&&byte| byte == delimiter).count();
     // Of equals `max_by_key` takes the last.

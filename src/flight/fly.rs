@@ -5,7 +5,7 @@ mod recorder;
 use crate::base::check::BadInput;
 use crate::base::lane::{Level, dispatch};
 use crate::flight::Log;
-use crate::flight::pilot::{Limits, Manoeuvre, Pilot, Seen};
+use crate::flight::pilot::{Manoeuvre, Pilot, PilotLimits, Seen};
 use crate::flight::sensors::SensorConfig;
 use crate::learn::nn::Network;
 use crate::model::constants::CONTROL_S;
@@ -41,7 +41,7 @@ const AFTER_S: f64 = 1.0;
 /// at most `seconds`. It lands early where the battery is empty before.
 pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Manoeuvre], seed: u64, seconds: f64) -> Flown {
     let battery = &vehicle.battery;
-    let limits = Limits {
+    let limits = PilotLimits {
         max_rate_rad_s: vehicle.max_rates_rad_s(),
         hover_command: vehicle.hover_command(0.5 * (battery.full_v + battery.empty_v)),
         seconds,

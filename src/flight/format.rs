@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// A file that is read.
 #[derive(Clone, Copy)]
-pub struct File<'a> {
+pub struct LogFile<'a> {
     pub path: &'a Path,
     /// What it is called in messages.
     pub name: &'a str,
@@ -44,14 +44,14 @@ pub trait Format: Sync {
     fn name(&self) -> &'static str;
 
     /// Whether this is such a file, by its content where that can be told, and else by the end of its name.
-    fn recognises(&self, file: &File) -> bool;
+    fn recognises(&self, file: &LogFile) -> bool;
 
     /// Name of the built-in mapping for the file, and a remark where others were possible.
-    fn mapping(&self, file: &File) -> Result<(&'static str, Option<String>), BadInput>;
+    fn mapping(&self, file: &LogFile) -> Result<(&'static str, Option<String>), BadInput>;
 
     /// Reads what the mapping names; of other tables the name at least, for messages about what is not there. A file
     /// that breaks off, or turns bad, gives what came before.
-    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput>;
+    fn tables(&self, file: &LogFile, mapping: &Mapping) -> Result<Content, BadInput>;
 
     /// Whether a file may hold several flights.
     fn has_flights(&self) -> bool {
@@ -59,7 +59,7 @@ pub trait Format: Sync {
     }
 }
 
-impl<'a> File<'a> {
+impl<'a> LogFile<'a> {
     /// The bytes by which formats are told apart.
     pub fn start(&self) -> &'a [u8] {
         &self.bytes[..self.bytes.len().min(4096)]

@@ -11,7 +11,7 @@ mod streams;
 mod units;
 
 pub use frames::{Body, VelocityFrame, World};
-pub use parts::{Battery, Imu, Motors, Odometry, Rotors, Setpoint, States};
+pub use parts::{BatteryPart, ImuPart, MotorsPart, OdometryPart, RotorsPart, SetpointPart, StatesPart};
 pub use quantity::Time;
 
 use crate::base::check::{BadInput, Check, Invalid};
@@ -51,13 +51,13 @@ pub struct Mapping {
     pub world: World,
     /// Time of a row, where a stream does not say otherwise: `header.stamp` by default, or the time of logging.
     pub time: Option<Time>,
-    pub setpoint: Option<Setpoint>,
-    pub imu: Option<Imu>,
-    pub odometry: Option<Odometry>,
-    pub battery: Option<Battery>,
-    pub rotors: Option<Rotors>,
-    pub motors: Option<Motors>,
-    pub states: Option<States>,
+    pub setpoint: Option<SetpointPart>,
+    pub imu: Option<ImuPart>,
+    pub odometry: Option<OdometryPart>,
+    pub battery: Option<BatteryPart>,
+    pub rotors: Option<RotorsPart>,
+    pub motors: Option<MotorsPart>,
+    pub states: Option<StatesPart>,
     /// For files that do not say; what the file says wins.
     #[serde(default)]
     pub vehicle: VehicleFigures,

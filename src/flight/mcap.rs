@@ -20,7 +20,7 @@ mod record;
 mod schema;
 pub(super) mod vehicle;
 
-use super::format::{Content, File, Format};
+use super::format::{Content, Format, LogFile};
 use super::mapping::Mapping;
 use super::table::Tables;
 use crate::base::check::BadInput;
@@ -34,18 +34,18 @@ impl Format for Mcap {
         "MCAP"
     }
 
-    fn recognises(&self, file: &File) -> bool {
+    fn recognises(&self, file: &LogFile) -> bool {
         file.bytes.starts_with(b"\x89MCAP")
     }
 
-    fn mapping(&self, file: &File) -> Result<(&'static str, Option<String>), BadInput> {
+    fn mapping(&self, file: &LogFile) -> Result<(&'static str, Option<String>), BadInput> {
         let known = FOREIGN.into_iter().find(|(topics, _)| mentions(file.bytes, topics.as_bytes()));
         Ok(known.map_or(("canonical", None), |(topics, called)| {
             (called, Some(format!("it has topics below {topics}: read with the built-in mapping `{called}`")))
         }))
     }
 
-    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
+    fn tables(&self, file: &LogFile, mapping: &Mapping) -> Result<Content, BadInput> {
         let within = |error: BadInput| BadInput { place: format!("{}, {}", file.name, error.place), ..error };
         let wanted = |topic: &str| mapping.wanted(topic);
         let (mut tables, topics) = read(file.bytes, &wanted).map_err(within)?;

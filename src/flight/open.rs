@@ -4,7 +4,7 @@ use super::Log;
 use super::blackbox::Blackbox;
 use super::blackbox::decoded::Decoded;
 use super::csv::files::Csv;
-use super::format::{Content, File, FlightSummary, Format};
+use super::format::{Content, FlightSummary, Format, LogFile};
 use super::mapping::Mapping;
 use super::mcap::Mcap;
 use super::ulog::ULog;
@@ -48,7 +48,7 @@ pub fn open_with(path: &Path, options: Options) -> Result<Opened, BadInput> {
 /// Reads a log that the file `path` holds as `bytes`.
 pub fn open_bytes(path: &Path, bytes: &[u8], options: Options) -> Result<Opened, BadInput> {
     let name = &path.display().to_string();
-    let file = File { path, name, bytes, flight: options.flight };
+    let file = LogFile { path, name, bytes, flight: options.flight };
     let format = recognise(&file)?;
     if options.flight.is_some() && !format.has_flights() {
         let found = format!("a file of another kind, {name}");
@@ -76,7 +76,7 @@ fn read(path: &Path) -> Result<Vec<u8>, BadInput> {
 }
 
 /// The format of a file.
-fn recognise(file: &File) -> Result<&'static dyn Format, BadInput> {
+fn recognise(file: &LogFile) -> Result<&'static dyn Format, BadInput> {
     /// Logs that others convert: how they start, what they are, what to do.
     const FOREIGN: [(&[u8], &str, &str); 2] = [
         (b"SQLite format 3", "an SQLite database", "convert a rosbag2 recording with `ros2 bag convert` to MCAP"),

@@ -11,7 +11,7 @@ mod plan;
 mod script;
 mod view;
 
-use crate::base::rng::{Philox, Sequence, Stream};
+use crate::base::rng::{Philox, RngStream, Sequence};
 use cascade::{Cascade, Demand};
 pub use manoeuvre::Manoeuvre;
 use nalgebra::Vector3;
@@ -34,7 +34,7 @@ pub struct Seen {
 
 /// What the pilot knows of the vehicle and the flight.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub struct PilotLimits {
     /// Body rates at full stick, rad/s.
     pub max_rate_rad_s: [f64; 3],
     /// Thrust command that about carries the vehicle, -1..1.
@@ -57,7 +57,7 @@ const LANDING_S: f64 = 16.0;
 const TOUCH_M: f64 = 0.15;
 
 #[derive(Debug)]
-enum Phase {
+enum PilotPhase {
     Ground,
     TakeOff,
     /// On the way to where the manoeuvre begins.
@@ -70,7 +70,7 @@ enum Phase {
 /// See the module.
 #[derive(Debug)]
 pub struct Pilot {
-    limits: Limits,
+    limits: PilotLimits,
     kinds: Vec<Manoeuvre>,
     /// Kinds left of this round, last first.
     deck: Vec<Manoeuvre>,
@@ -80,7 +80,7 @@ pub struct Pilot {
     cascade: Cascade,
     /// Where the first command was asked for: the origin of its box.
     origin: Option<Vector3<f64>>,
-    phase: Phase,
+    phase: PilotPhase,
     /// Since when, s.
     since: f64,
     before: f64,
@@ -89,7 +89,7 @@ pub struct Pilot {
 impl Pilot {
     /// A pilot that flies all kinds of manoeuvres, but for the low hover in a short flight; `seed` decides their order
     /// and sizes.
-    pub fn new(seed: u64, limits: Limits) -> Self {
+    pub fn new(seed: u64, limits: PilotLimits) -> Self {
         Self {
             limits,
             // A low hover shows nothing but the ground effect: a short flight has no time for it.
@@ -99,10 +99,10 @@ impl Pilot {
                 .collect(),
             deck: Vec::new(),
             flown: [0; Manoeuvre::ALL.len()],
-            rng: Philox::new(seed).sequence(Stream::Pilot, 0, 0),
+            rng: Philox::new(seed).sequence(RngStream::Pilot, 0, 0),
             cascade: Cascade::new(&limits),
             origin: None,
-            phase: Phase::Ground,
+            phase: PilotPhase::Ground,
             since: 0.0,
             before: f64::NEG_INFINITY,
         }
@@ -141,20 +141,20 @@ impl Pilot {
 
     /// Whether it is back on the ground for good.
     pub fn landed(&self) -> bool {
-        matches!(self.phase, Phase::Landed)
+        matches!(self.phase, PilotPhase::Landed)
     }
 
     /// The phase after this one.
-    fn next(&mut self, view: &View) -> Phase {
+    fn next(&mut self, view: &View) -> PilotPhase {
         let over = view.time > self.limits.seconds - LANDING_S || view.voltage < self.limits.empty_v;
-        match std::mem::replace(&mut self.phase, Phase::Landed) {
-            Phase::Ground => Phase::TakeOff,
-            Phase::Landing | Phase::Landed => Phase::Landed,
-            _ if over => Phase::Landing,
-            Phase::Approach(plan) => Phase::Manoeuvre(plan),
-            Phase::TakeOff | Phase::Manoeuvre(_) => {
+        match std::mem::replace(&mut self.phase, PilotPhase::Landed) {
+            PilotPhase::Ground => PilotPhase::TakeOff,
+            PilotPhase::Landing | PilotPhase::Landed => PilotPhase::Landed,
+            _ if over => PilotPhase::Landing,
+            PilotPhase::Approach(plan) => PilotPhase::Manoeuvre(plan),
+            PilotPhase::TakeOff | PilotPhase::Manoeuvre(_) => {
                 self.cascade.settle();
-                Phase::Approach(self.plan(view))
+                PilotPhase::Approach(self.plan(view))
             }
         }
     }
@@ -175,23 +175,23 @@ impl Pilot {
     }
 }
 
-impl Phase {
+impl PilotPhase {
     /// What the phase asks for, `Some(None)` for resting on the ground, or `None` where it is over.
     fn demand(&mut self, now: &Now, rng: &mut Sequence) -> Option<Option<Demand>> {
         let view = now.view;
         let over = view.time > now.limits.seconds - LANDING_S || view.voltage < now.limits.empty_v;
         let demand = match self {
-            Phase::Ground if now.time < GROUND_S => return Some(None),
-            Phase::Ground => None,
-            Phase::Landed => return Some(None),
-            Phase::Landing if view.position.z < TOUCH_M => None,
-            Phase::Landing => Some(Demand::at(Vector3::new(0.0, 0.0, -(0.5 + 0.4 * view.position.z).min(9.0)))),
+            PilotPhase::Ground if now.time < GROUND_S => return Some(None),
+            PilotPhase::Ground => None,
+            PilotPhase::Landed => return Some(None),
+            PilotPhase::Landing if view.position.z < TOUCH_M => None,
+            PilotPhase::Landing => Some(Demand::at(Vector3::new(0.0, 0.0, -(0.5 + 0.4 * view.position.z).min(9.0)))),
             _ if over => None,
-            Phase::TakeOff if view.position.z > TAKEN_OFF_M => None,
-            Phase::TakeOff => Some(Demand::at(Vector3::new(0.0, 0.0, 4.0))),
-            Phase::Approach(plan) => plan.approach(now),
-            Phase::Manoeuvre(plan) if !plan.low && bounds::leaves(view, now.limits) => None,
-            Phase::Manoeuvre(plan) => plan.script.demand(now, rng),
+            PilotPhase::TakeOff if view.position.z > TAKEN_OFF_M => None,
+            PilotPhase::TakeOff => Some(Demand::at(Vector3::new(0.0, 0.0, 4.0))),
+            PilotPhase::Approach(plan) => plan.approach(now),
+            PilotPhase::Manoeuvre(plan) if !plan.low && bounds::leaves(view, now.limits) => None,
+            PilotPhase::Manoeuvre(plan) => plan.script.demand(now, rng),
         };
         demand.map(Some)
     }

@@ -159,12 +159,12 @@ impl Check for SensorConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Philox, Stream};
+    use crate::base::rng::{Philox, RngStream};
 
     #[test]
     fn errors_are_as_large_as_configured() {
         let channel = Channel { noise: 0.5, bias: 0.0, step: 0.25, range: 3.0 };
-        let mut rng = Philox::new(1).sequence(Stream::Sensors, 0, 0);
+        let mut rng = Philox::new(1).sequence(RngStream::Sensors, 0, 0);
         let read: Vec<f64> = (0..20_000).map(|_| channel.read([1.0], [0.5], &mut rng)[0]).collect();
         let mean = read.iter().sum::<f64>() / read.len() as f64;
         let variance = read.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / read.len() as f64;

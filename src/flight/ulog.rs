@@ -5,7 +5,7 @@ mod format;
 mod vehicle;
 
 use super::Readable;
-use super::format::{Content, File, Format};
+use super::format::{Content, Format, LogFile};
 use super::mapping::Mapping;
 use super::table::{LOG_TIME, Table, Tables};
 use crate::base::check::BadInput;
@@ -27,7 +27,7 @@ struct LogReader<'a> {
     /// Topics by the number under which records name them.
     ids: HashMap<u16, String>,
     topics: HashMap<String, TopicColumns>,
-    parameters: vehicle::Parameters,
+    parameters: vehicle::Px4Parameters,
 }
 
 /// Logs of PX4.
@@ -38,15 +38,15 @@ impl Format for ULog {
         "PX4 ULog"
     }
 
-    fn recognises(&self, file: &File) -> bool {
+    fn recognises(&self, file: &LogFile) -> bool {
         file.bytes.starts_with(b"ULog")
     }
 
-    fn mapping(&self, _: &File) -> Result<(&'static str, Option<String>), BadInput> {
+    fn mapping(&self, _: &LogFile) -> Result<(&'static str, Option<String>), BadInput> {
         Ok(("px4", None))
     }
 
-    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
+    fn tables(&self, file: &LogFile, mapping: &Mapping) -> Result<Content, BadInput> {
         let made = mapping.wanted("motors") || mapping.wanted("rotors") || mapping.wanted("vehicle_status");
         let wanted = |topic: &str| mapping.wanted(topic) || made && vehicle::SOURCES.contains(&topic);
         let (mut tables, parameters) = read(file.bytes, file.name, &wanted)?;
@@ -69,7 +69,7 @@ enum EarlyEnd {
 
 /// Reads the topics that are `wanted`; of others the name alone, as an empty table. Times are in s since the vehicle's
 /// start. A file that breaks off, or turns bad, gives what came before.
-fn read(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result<(Tables, vehicle::Parameters), BadInput> {
+fn read(bytes: &[u8], name: &str, wanted: &dyn Fn(&str) -> bool) -> Result<(Tables, vehicle::Px4Parameters), BadInput> {
     if bytes.len() < HEADER_BYTES || !bytes.starts_with(MAGIC) {
         return Err(BadInput::new(name, "no ULog header", "a PX4 ULog file", ""));
     }

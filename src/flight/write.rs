@@ -13,9 +13,9 @@ use ::mcap::{Compression, McapError, WriteOptions, Writer};
 use cdr::Cdr;
 use std::collections::BTreeMap;
 use std::io::Cursor;
-use topic::Topic;
+use topic::CanonicalTopic;
 
-type File = Writer<Cursor<Vec<u8>>>;
+type McapWriter = Writer<Cursor<Vec<u8>>>;
 
 /// The bytes of a canonical MCAP file.
 ///
@@ -89,9 +89,9 @@ struct Queue<'l> {
 
 /// Empty streams get no channel.
 fn queue<'l, const N: usize>(
-    file: &mut File,
+    file: &mut McapWriter,
     log: &Log,
-    topic: Topic,
+    topic: CanonicalTopic,
     frame: &'static str,
     stream: &'l Stream<N>,
     message: impl Fn(&mut Cdr, [f64; N]) + 'l,
@@ -124,7 +124,7 @@ impl Queue<'_> {
         self.times_ns.get(self.written).copied()
     }
 
-    fn write(&mut self, file: &mut File) -> Result<()> {
+    fn write(&mut self, file: &mut McapWriter) -> Result<()> {
         let time_ns = self.times_ns[self.written];
         let mut cdr = Cdr::new(time_ns, self.frame);
         (self.message)(&mut cdr, self.written);

@@ -11,7 +11,7 @@ use crate::base::lane::{LANES, Lane};
 use crate::base::rng::Sequence;
 use crate::learn::policy::ACTIONS;
 use aligned::Aligned;
-use mlp::{Hidden, Shape};
+use mlp::{Hidden, Layout};
 use std::ops::Range;
 
 /// Units of a hidden layer (paper section 4.5).
@@ -25,8 +25,8 @@ pub const TILE_SAMPLES: usize = TILE_BLOCKS * LANES;
 /// textbook.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network<E> {
-    pub actor: Shape,
-    pub critic: Shape,
+    pub actor: Layout,
+    pub critic: Layout,
     pub parameters: Aligned<E>,
 }
 
@@ -46,8 +46,8 @@ pub struct Scratch<E>(Hidden<E>);
 impl<E: Copy + Default> Network<E> {
     /// All parameters zero, for observations of `inputs` numbers.
     pub fn zeros(inputs: usize) -> Self {
-        let actor = Shape { inputs, outputs: ACTIONS, offset: 0 };
-        let critic = Shape { inputs, outputs: 1, offset: actor.end() };
+        let actor = Layout { inputs, outputs: ACTIONS, offset: 0 };
+        let critic = Layout { inputs, outputs: 1, offset: actor.end() };
         let parameters = Aligned::zeros((critic.end() + ACTIONS).next_multiple_of(LANES));
         Network { actor, critic, parameters }
     }
@@ -69,7 +69,7 @@ impl<E: Copy + Default> Network<E> {
     }
 
     /// Layer 0, 1 or 2 (the head) of `shape`, which is this network's actor or critic.
-    pub fn layer(&self, shape: &Shape, index: usize) -> Layer<E> {
+    pub fn layer(&self, shape: &Layout, index: usize) -> Layer<E> {
         let p = &self.parameters;
         if index == 2 {
             let head = &p[shape.head()];
@@ -85,7 +85,7 @@ impl<E: Copy + Default> Network<E> {
     ///
     /// # Panics
     /// If the layer has other dimensions.
-    pub fn set_layer(&mut self, shape: &Shape, index: usize, layer: &Layer<E>) {
+    pub fn set_layer(&mut self, shape: &Layout, index: usize, layer: &Layer<E>) {
         let p = &mut self.parameters;
         if index == 2 {
             assert_eq!(layer.weights.len(), HIDDEN * shape.outputs);

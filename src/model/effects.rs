@@ -16,7 +16,8 @@ pub use card::{Card, CompactNumber, EffectKind, EffectParameter, Evidence, RateR
 pub use dependence::Quantities;
 pub use quantity::Quantity;
 pub use stages::{
-    Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, RelativeWind, Sensed, Setpoint, ThrustInput,
+    Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, CommandSetpoint, RelativeWind, Sensed,
+    ThrustInput,
 };
 pub use values::EffectValues;
 
@@ -29,7 +30,7 @@ pub trait Effect {
     fn command_delay<R: Real>(_k: &[R], _delay: &mut CommandDelay<R>) {}
     /// Commands as they were sent, before the lag.
     #[inline(always)]
-    fn setpoint<R: Real>(_k: &[R], _setpoint: &mut Setpoint<R>) {}
+    fn setpoint<R: Real>(_k: &[R], _setpoint: &mut CommandSetpoint<R>) {}
     /// How rates and thrust follow.
     #[inline(always)]
     fn actuator<R: Real>(_k: &[R], _actuator: &mut Actuator<R>) {}
@@ -67,7 +68,7 @@ macro_rules! effects {
         enum LogIndex { $($Log),* }
 
         effects!(@stage $($model::$Model)*;
-            command_delay CommandDelay, setpoint Setpoint, actuator Actuator, body_rates BodyRates,
+            command_delay CommandDelay, setpoint CommandSetpoint, actuator Actuator, body_rates BodyRates,
             battery_load BatteryLoad, thrust_input ThrustInput, relative_wind RelativeWind,
             aerodynamic_forces AerodynamicForces,);
 

@@ -5,19 +5,19 @@ use crate::model::dynamics::Craft;
 use rayon::prelude::*;
 
 /// How a block rests in memory.
-type Rest = Portable<f32>;
+type Stored = Portable<f32>;
 
 /// Vehicles side by side, in blocks of those that obey the same kind of equations.
 #[derive(Clone, Debug)]
 pub struct Batch {
-    blocks: Vec<Block>,
+    blocks: Vec<VehicleBlock>,
     /// Block and lane of each vehicle.
     places: Vec<(usize, usize)>,
 }
 
 #[derive(Clone, Debug)]
-struct Block {
-    craft: Craft<Rest>,
+struct VehicleBlock {
+    craft: Craft<Stored>,
     /// Which vehicle is in each lane. Lanes that are left over repeat the last one, and are never shown.
     vehicles: [usize; LANES],
 }
@@ -34,9 +34,9 @@ impl Batch {
         }
         let block = |members: &&[usize]| {
             let indices: [usize; LANES] = std::array::from_fn(|lane| members[lane.min(members.len() - 1)]);
-            let mut craft = vehicles[indices[0]].map(|x| Rest::splat(x as f32));
+            let mut craft = vehicles[indices[0]].map(|x| Stored::splat(x as f32));
             indices.iter().enumerate().for_each(|(lane, &i)| craft.set_lane(lane, &vehicles[i].map(|x| x as f32)));
-            Block { craft, vehicles: indices }
+            VehicleBlock { craft, vehicles: indices }
         };
         Batch { blocks: members.iter().map(block).collect(), places }
     }
@@ -76,7 +76,7 @@ impl Batch {
 }
 
 struct Advance<'a> {
-    block: &'a mut Block,
+    block: &'a mut VehicleBlock,
     actions: &'a [[f32; 4]],
     steps: usize,
 }

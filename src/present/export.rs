@@ -6,14 +6,14 @@ mod onnx;
 
 use crate::base::check::BadInput;
 use crate::base::error::Result;
-use crate::race::snapshot::{Content, Snapshot};
+use crate::race::snapshot::{PolicyContent, Snapshot};
 use sha2::{Digest, Sha256};
 
 /// What is exported.
 #[derive(Clone, Debug)]
 pub struct Exported {
     pub snapshot: Snapshot,
-    pub content: Content,
+    pub content: PolicyContent,
     /// The metadata of the policy's file.
     pub metadata: serde_json::Value,
     /// Of the file that the policy was read from: what `sha256sum` says.
@@ -22,7 +22,7 @@ pub struct Exported {
 
 /// A format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum ExportFormat {
     C,
     Onnx,
     Json,
@@ -45,11 +45,11 @@ impl Exported {
     }
 
     /// Names and contents of the files of an export.
-    pub fn files(&self, format: Format) -> Result<Vec<(String, Vec<u8>)>> {
+    pub fn files(&self, format: ExportFormat) -> Result<Vec<(String, Vec<u8>)>> {
         match format {
-            Format::C => Ok(c::files(self)),
-            Format::Onnx => Ok(vec![("policy.onnx".into(), onnx::model(self))]),
-            Format::Json => Ok(vec![("policy.json".into(), json::document(self)?.into_bytes())]),
+            ExportFormat::C => Ok(c::files(self)),
+            ExportFormat::Onnx => Ok(vec![("policy.onnx".into(), onnx::model(self))]),
+            ExportFormat::Json => Ok(vec![("policy.json".into(), json::document(self)?.into_bytes())]),
         }
     }
 }

@@ -34,7 +34,7 @@ pub struct Replay {
 pub struct ReplayVehicle {
     pub name: String,
     /// In the order of time.
-    pub frames: Vec<Frame>,
+    pub frames: Vec<ReplayFrame>,
     /// Gates that were passed: when, s, and which, by its place on the track.
     pub passes: Vec<(f64, usize)>,
     /// Times from one crossing of the first gate to the next, s.
@@ -45,7 +45,7 @@ pub struct ReplayVehicle {
 
 /// One moment of a flight. NaN stands for what is not known.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
+pub struct ReplayFrame {
     pub time_s: f64,
     /// World, m.
     pub position: [f64; 3],
@@ -64,7 +64,7 @@ pub struct Frame {
     pub observation: Option<[f32; OBSERVATIONS]>,
 }
 
-impl Frame {
+impl ReplayFrame {
     /// m/s
     pub fn speed(&self) -> f64 {
         self.velocity.iter().map(|v| v * v).sum::<f64>().sqrt()

@@ -16,7 +16,7 @@ use crate::race::snapshot::Snapshot;
 use std::path::Path;
 
 /// A vehicle and what it is called in the comparison.
-pub type Named<'a> = (&'static str, &'a Vehicle);
+pub type NamedVehicle<'a> = (&'static str, &'a Vehicle);
 
 /// Flies `policy` from the pad in `vehicle`, with the random numbers of its own seed, whatever the vehicle.
 pub fn fly(policy: &Snapshot, vehicle: &Vehicle) -> Result<Benchmark> {
@@ -31,7 +31,7 @@ pub fn fly(policy: &Snapshot, vehicle: &Vehicle) -> Result<Benchmark> {
 pub fn retrain(
     to: &Path,
     minutes: f64,
-    vehicles: [Named; 2],
+    vehicles: [NamedVehicle; 2],
     threads: usize,
     watch: &mut dyn TrainingWatch,
 ) -> Result<Vec<(&'static str, Benchmark)>> {

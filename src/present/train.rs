@@ -9,7 +9,7 @@ pub use choose::evaluate;
 pub use record::told;
 pub use resume::resume;
 
-use super::run::checkpoints::{Checkpoints, Found, Taken};
+use super::run::checkpoints::{Checkpoints, ResumePoint, Taken};
 use super::run::evaluated::Evaluated;
 use super::run::metrics::LogRow;
 use super::run::provenance::Provenance;
@@ -21,17 +21,17 @@ use crate::base::threads;
 use crate::learn::ppo::state::Setback;
 use crate::learn::ppo::train::Iteration;
 use crate::race::config::Setup;
-use crate::race::env::tally::Tally;
+use crate::race::env::tally::RaceTally;
 use crate::race::snapshot::Snapshot;
 use crate::race::train::{TrainedPolicies, train};
-use record::Recorder;
+use record::TrainingRecorder;
 
 /// Who watches a training, and may end it.
 pub trait TrainingWatch: Send {
     /// It begins in the folder of `run`.
     fn begin(&mut self, _run: &Run, _setup: &Setup, _made: &Provenance) {}
     /// An iteration is done; `row` is what the log says of it.
-    fn iteration(&mut self, _iteration: &Iteration<Tally>, _row: &LogRow) {}
+    fn iteration(&mut self, _iteration: &Iteration<RaceTally>, _row: &LogRow) {}
     /// Something that whoever trains should know, in a line.
     fn remark(&mut self, _text: &str) {}
     /// So many snapshots are about to be evaluated.
@@ -80,7 +80,7 @@ pub fn make(run: &Run, setup: &Setup, threads: usize, command: &str, watch: &mut
     run.write("provenance.json", encode::json("the provenance", &provenance)?)?;
     let checkpoints = Checkpoints::claim(run, setup)?;
     watch.begin(run, setup, &provenance);
-    go_on(run, setup, threads, checkpoints, Found::default(), watch)
+    go_on(run, setup, threads, checkpoints, ResumePoint::default(), watch)
 }
 
 /// Trains from what was `found` to the end.
@@ -89,15 +89,15 @@ fn go_on(
     setup: &Setup,
     threads: usize,
     checkpoints: Checkpoints,
-    found: Found,
+    found: ResumePoint,
     watch: &mut dyn TrainingWatch,
 ) -> Result<Ended> {
-    let Found { state, note, .. } = found;
+    let ResumePoint { state, note, .. } = found;
     let seconds = state.as_ref().map_or(0.0, |state| state.seconds);
     let ended = threads::on(Some(threads), || {
-        let mut recorder = Recorder::new(run, setup, &checkpoints, note, seconds, watch)?;
+        let mut recorder = TrainingRecorder::new(run, setup, &checkpoints, note, seconds, watch)?;
         let trained = train(Level::best(), setup, state.as_ref(), &mut recorder);
-        let Recorder { failed, taken, watch, .. } = recorder;
+        let TrainingRecorder { failed, taken, watch, .. } = recorder;
         match (failed, &trained.diverged) {
             (Some(error), _) => return Err(unwritten(run, &taken, error)),
             (_, Some(setback)) => return Err(diverged(run, setback)),

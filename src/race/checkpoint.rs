@@ -17,9 +17,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 /// 16 environments of a race between rollouts.
-pub type Saved = Block<Portable<f32>>;
+pub type SavedBlock = Block<Portable<f32>>;
 /// The state of a training of a race.
-pub type RaceState = TrainingState<Saved>;
+pub type RaceState = TrainingState<SavedBlock>;
 
 /// A format is this and a version. The version changes where an older racer would misread the file.
 const FORMAT: &str = "racer-checkpoint-1";
@@ -123,13 +123,13 @@ fn read_content(content: &[u8], race: &Race) -> Result<(RaceState, String), Stri
 }
 
 /// Adds the bits of all numbers of `block`.
-fn write_block(block: &Saved, words: &mut Vec<u32>) {
+fn write_block(block: &SavedBlock, words: &mut Vec<u32>) {
     block.map(|x| words.extend(x.0.map(f32::to_bits)));
     words.extend(block.target.iter().chain(&block.passed).chain([&block.step]));
 }
 
 /// The inverse of [`write_block`] for environments `first..first + 16`; `None` unless there are as many numbers.
-fn read_block(race: &Race, first: u32, words: &mut impl Iterator<Item = u32>) -> Option<Saved> {
+fn read_block(race: &Race, first: u32, words: &mut impl Iterator<Item = u32>) -> Option<SavedBlock> {
     let mut short = false;
     let mut next = || {
         words.next().unwrap_or_else(|| {

@@ -238,8 +238,8 @@ impl<L: Lane32> Block<L> {
 
     /// What its observations are made of.
     #[inline(always)]
-    fn seen(&self) -> observe::Seen<'_, L> {
-        observe::Seen {
+    fn seen(&self) -> observe::ObservationInputs<'_, L> {
+        observe::ObservationInputs {
             gate: &self.gate,
             in_gate: self.in_gate,
             velocity: self.craft.state.velocity,
@@ -282,7 +282,7 @@ impl<L: Lane32> Block<L> {
         let change: [L; 4] = build!(|i| action[i] - self.history[0][i]);
         let terms = reward::terms(
             &config.reward,
-            &reward::Inputs {
+            &reward::RewardInputs {
                 distance,
                 passed: crossing.passed,
                 timed_out,

@@ -1,7 +1,7 @@
 //! A few vehicles' races, step by step.
 
 use crate::base::lane::{Kernel, LANES, Lane32, build};
-use crate::base::rng::Stream;
+use crate::base::rng::RngStream;
 use crate::learn::nn::{Network, TILE_SAMPLES};
 use crate::learn::policy::ACTIONS;
 use crate::model::dynamics::{Craft, Factors};
@@ -52,7 +52,7 @@ impl Kernel for Heat<'_> {
         for lane in 0..LANES {
             // Lanes that nobody looks at fly as the first does.
             let vehicle = if lane < vehicles { first + lane } else { first };
-            let mut rng = race.rng.sequence(Stream::Evaluation, vehicle as u32, 0);
+            let mut rng = race.rng.sequence(RngStream::Evaluation, vehicle as u32, 0);
             let start = reset::draw(race, &mut rng, place, (vehicle == 0).then_some(Factors::NOMINAL));
             block.begin(race, lane, &start);
             out.push(Raced { steps: Vec::new(), seen: Vec::new(), passes: Vec::new(), failure: None });

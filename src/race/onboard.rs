@@ -13,7 +13,7 @@ use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
 use crate::race::act::act;
 use crate::race::env::gates::{self, GateFrame};
-use crate::race::env::observe::{self, OBSERVATIONS, Seen};
+use crate::race::env::observe::{self, OBSERVATIONS, ObservationInputs};
 
 /// What a flight computer knows of its vehicle. World frame ENU, body frame front-left-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,7 +119,7 @@ pub enum Crossing {
 
 /// One step's answer.
 #[derive(Clone, Copy, Debug)]
-pub struct Answer {
+pub struct Decision {
     pub crossing: Crossing,
     /// Share of the last move that lay before the plane; meaningful where it was crossed.
     pub fraction: f32,
@@ -140,7 +140,7 @@ pub struct Onboard<'a> {
 
 impl Onboard<'_> {
     /// One control period: where the vehicle is, what it is to be told.
-    pub fn step(&mut self, now: &Estimate) -> Answer {
+    pub fn step(&mut self, now: &Estimate) -> Decision {
         let (crossing, fraction) = self.cross(now.position);
         let observation = self.observe(now);
         let action = act(self.network, &[observation])[0];
@@ -151,7 +151,7 @@ impl Onboard<'_> {
         self.memory.history = [action, self.memory.history[0], self.memory.history[1]];
         self.memory.position = Some(now.position);
         let setpoint = self.around.setpoint(action, now.voltage);
-        Answer { crossing, fraction, target, observation, action, setpoint }
+        Decision { crossing, fraction, target, observation, action, setpoint }
     }
 
     /// Compares the last two positions with the target gate, and goes on to the next where it was passed.
@@ -173,7 +173,7 @@ impl Onboard<'_> {
     fn observe(&self, now: &Estimate) -> [f32; OBSERVATIONS] {
         type L = Portable<f32>;
         let gate = &self.around.gates[self.memory.target];
-        let seen = Seen {
+        let seen = ObservationInputs {
             in_gate: gate.locate(now.position).map(L::splat),
             gate: &gate.map(L::splat),
             velocity: now.velocity.map(L::splat),

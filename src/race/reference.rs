@@ -18,7 +18,7 @@ pub mod mass;
 pub mod solve;
 mod system;
 
-use crate::base::rng::{Philox, Stream};
+use crate::base::rng::{Philox, RngStream};
 use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
 use course::{Course, Nodes};
@@ -83,7 +83,7 @@ pub fn lap(track: &Track, vehicle: &Vehicle, voltage: f64) -> Option<Reference> 
 /// The fastest lap found from several beginnings. The same course always gives the same lap.
 pub fn best(course: &Course, effort: Effort) -> Option<Nodes> {
     let starts = (0..effort.starts).filter_map(|start| {
-        let mut rng = Philox::new(1).sequence(Stream::Reference, start as u32, 0);
+        let mut rng = Philox::new(1).sequence(RngStream::Reference, start as u32, 0);
         let disorder = if start == 0 { 0.0 } else { 0.3 };
         solve(course, course.guess(effort.density, disorder, &mut rng)?, None)
     });

@@ -2,7 +2,7 @@
 
 use crate::base::check::BadInput;
 use crate::base::lane::{Kernel, LANES, Lane, Lane32, Level, Portable, build, dispatch};
-use crate::base::rng::Stream;
+use crate::base::rng::RngStream;
 use crate::learn::policy::ACTIONS;
 use crate::learn::ppo::Environment;
 use crate::model::attitude::body_axes;
@@ -10,7 +10,7 @@ use crate::model::dynamics::Factors;
 use crate::race::config::Setup;
 use crate::race::env::observe::OBSERVATIONS;
 use crate::race::env::reset::{self, StartPlace};
-use crate::race::env::tally::Tally;
+use crate::race::env::tally::RaceTally;
 use crate::race::env::terminate::CAUSES;
 use crate::race::env::{Block, Race, lanes};
 use rayon::prelude::*;
@@ -19,7 +19,7 @@ use rayon::prelude::*;
 const MOST: usize = 1 << 24;
 
 /// How a block rests in memory between steps.
-type Rest = Block<Portable<f32>>;
+type StoredBlock = Block<Portable<f32>>;
 
 /// Many vehicles that race on one track, each for itself: the environment that policies are trained in, to be stepped
 /// by hand.
@@ -32,7 +32,7 @@ pub struct Simulation {
     race: Race,
     place: StartPlace,
     vehicles: usize,
-    blocks: Vec<Rest>,
+    blocks: Vec<StoredBlock>,
 }
 
 /// Where a vehicle is and how it moves. World frame ENU, body frame front-left-up.
@@ -91,7 +91,7 @@ impl Simulation {
         let Setup { config, track, vehicle } = setup;
         let race = Race::new(&config.env, track, vehicle, config.seed);
         let blocks = (0..vehicles.div_ceil(LANES)).into_par_iter().map(|i| {
-            let mut block: Rest = race.empty_block((i * LANES) as u32);
+            let mut block: StoredBlock = race.empty_block((i * LANES) as u32);
             (0..LANES).for_each(|lane| begin(&race, place, &mut block, lane));
             block
         });
@@ -125,7 +125,7 @@ impl Simulation {
 
     /// What a policy would see of every vehicle, noise included; the same until the next step.
     pub fn observations(&self) -> Vec<[f32; OBSERVATIONS]> {
-        let of = |block: &Rest| dispatch(self.level, Observe { race: &self.race, block });
+        let of = |block: &StoredBlock| dispatch(self.level, Observe { race: &self.race, block });
         let mut all: Vec<_> = self.blocks.par_iter().flat_map_iter(of).collect();
         all.truncate(self.vehicles);
         all
@@ -145,7 +145,7 @@ impl Simulation {
         let (level, race, place) = (self.level, &self.race, self.place);
         let mut out = vec![Transition::default(); vehicles];
         let parts = self.blocks.par_iter_mut().zip(commands.par_chunks(LANES)).zip(out.par_chunks_mut(LANES));
-        parts.for_each(|((block, commands), out)| dispatch(level, Step { race, place, block, commands, out }));
+        parts.for_each(|((block, commands), out)| dispatch(level, StepJob { race, place, block, commands, out }));
         Ok(out)
     }
 }
@@ -153,14 +153,14 @@ impl Simulation {
 /// Begins a flight in `lane`.
 fn begin<L: Lane32>(race: &Race, place: StartPlace, block: &mut Block<L>, lane: usize) {
     let vehicle = block.first + lane as u32;
-    let mut rng = race.rng.sequence(Stream::Reset, vehicle, block.step);
+    let mut rng = race.rng.sequence(RngStream::Reset, vehicle, block.step);
     let start = reset::draw(race, &mut rng, place, (vehicle == 0).then_some(Factors::NOMINAL));
     block.begin(race, lane, &start);
 }
 
 struct Observe<'a> {
     race: &'a Race,
-    block: &'a Rest,
+    block: &'a StoredBlock,
 }
 
 impl Kernel for Observe<'_> {
@@ -175,20 +175,20 @@ impl Kernel for Observe<'_> {
     }
 }
 
-struct Step<'a> {
+struct StepJob<'a> {
     race: &'a Race,
     place: StartPlace,
-    block: &'a mut Rest,
+    block: &'a mut StoredBlock,
     commands: &'a [[f32; ACTIONS]],
     out: &'a mut [Transition],
 }
 
-impl Kernel for Step<'_> {
+impl Kernel for StepJob<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lane32>(self) {
-        let Step { race, place, block: rest, commands, out } = self;
+        let StepJob { race, place, block: rest, commands, out } = self;
         let mut block: Block<L> = race.load(rest);
         let told = |lane: usize, k: usize| commands.get(lane).map_or(0.0, |command| command[k].clamp(-1.0, 1.0));
         let mut action = [[0.0; LANES]; ACTIONS];
@@ -210,6 +210,6 @@ impl Kernel for Step<'_> {
         for lane in lanes(outcome.terminated | outcome.truncated) {
             begin(race, place, &mut block, lane);
         }
-        *rest = race.save(&block, &mut Tally::default());
+        *rest = race.save(&block, &mut RaceTally::default());
     }
 }

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::Path;
 
-pub use self_test::Rows;
+pub use self_test::SelfTestRows;
 pub use tensors::Tensor;
 
 /// A policy and where it comes from.
@@ -74,7 +74,7 @@ impl Snapshot {
     }
 
     /// What is in the file.
-    pub fn content(&self) -> Result<Content, Error> {
+    pub fn content(&self) -> Result<PolicyContent, Error> {
         let About { track, vehicle, eval, .. } = &self.about;
         let flight = self_test::fly(&self.network, track, vehicle, eval.max_steps);
         let steps = self_test::window(&flight.steps);
@@ -86,10 +86,10 @@ impl Snapshot {
             lap_s: flight.lap_s,
         });
         let metadata = metadata::write(&self.about, flying).map_err(Error::encode("the policy"))?;
-        let rows = Rows::of(steps);
+        let rows = SelfTestRows::of(steps);
         let mut tensors = tensors::of(&self.network);
         tensors.extend(tensors::of_rows(&rows));
-        Ok(Content { metadata, rows, tensors })
+        Ok(PolicyContent { metadata, rows, tensors })
     }
 
     /// The file's content; the same policy always gives the same bytes.
@@ -133,14 +133,14 @@ impl Snapshot {
 
 /// A policy's file before it becomes bytes.
 #[derive(Clone, Debug)]
-pub struct Content {
+pub struct PolicyContent {
     /// JSON.
     pub metadata: String,
-    pub rows: Rows,
+    pub rows: SelfTestRows,
     pub tensors: Vec<Tensor>,
 }
 
-impl Content {
+impl PolicyContent {
     /// As safetensors.
     pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
         let views: Result<Vec<_>, _> = self
@@ -167,12 +167,12 @@ fn read_about(bytes: &[u8]) -> Result<(u32, About), Invalid> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Philox, Stream};
+    use crate::base::rng::{Philox, RngStream};
     use crate::race::config::Setup;
 
     fn snapshot() -> Snapshot {
         let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).unwrap();
-        let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(Stream::Weights, 0, 0));
+        let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(RngStream::Weights, 0, 0));
         Snapshot {
             network,
             about: About { track, vehicle, env: config.env, eval: config.eval, seed: 3, steps: 7, seconds: 0.0 },

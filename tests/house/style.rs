@@ -1,6 +1,7 @@
 //! Lengths of lines and functions, and words that point outside the repository.
 
 use crate::{files, read, shown};
+use std::collections::BTreeMap;
 
 /// Columns of code, and of prose.
 const CODE: usize = 120;
@@ -87,4 +88,28 @@ fn functions_are_measured_with_signature_and_braces() {
                 fn d();\n}\n";
     let found = functions(text);
     assert_eq!(found.iter().map(|(line, length, _)| (*line, *length)).collect::<Vec<_>>(), [(1, 3), (6, 5)]);
+}
+
+/// A type of each command, as `clap` users write it. One letter names a register of one processor.
+const OF_EACH_COMMAND: &str = "Args";
+
+#[test]
+fn a_type_name_means_one_thing() {
+    let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for path in files("src", "rs") {
+        for line in read(&path).lines() {
+            // Indented ones belong to a trait, a macro or a function.
+            let line = ["pub(crate) ", "pub "].iter().fold(line, |line, word| line.strip_prefix(word).unwrap_or(line));
+            let words: Vec<_> = line.split(|c: char| !c.is_alphanumeric() && c != '_').take(2).collect();
+            if let ["struct" | "enum" | "trait" | "type", name] = words[..]
+                && name != OF_EACH_COMMAND
+                && name.len() > 1
+            {
+                places.entry(name.into()).or_default().push(shown(&path));
+            }
+        }
+    }
+    let twice: Vec<_> =
+        places.iter().filter(|(_, places)| places.len() > 1).map(|place| format!("{place:?}")).collect();
+    assert!(places.len() > 300 && twice.is_empty(), "{} of {}:\n{}", twice.len(), places.len(), twice.join("\n"));
 }

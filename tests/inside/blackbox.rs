@@ -6,10 +6,10 @@ mod pack;
 
 use encoder::{Logger, MAIN, header};
 use proptest::prelude::*;
-use racer::flight::blackbox::decoder::{Decoder, Frame};
-use racer::flight::blackbox::definition::{Definition, Definitions};
+use racer::flight::blackbox::decoder::{DecodedFrame, FrameDecoder};
+use racer::flight::blackbox::definition::{Definitions, FrameDefinition};
 use racer::flight::blackbox::header::Header;
-use racer::flight::blackbox::{split, tally::Tally};
+use racer::flight::blackbox::{split, tally::ByteTally};
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -18,19 +18,19 @@ const BETAFLIGHT: &str = "Betaflight 4.5.1 (77d01ba3b) STM32F405";
 /// Everything that a flight holds, in order: a letter, the time, and numbers.
 type Rows = Vec<(char, i64, Vec<i64>)>;
 
-fn decode(bytes: &[u8]) -> Result<(Rows, Tally), String> {
+fn decode(bytes: &[u8]) -> Result<(Rows, ByteTally), String> {
     let header = Header::of(bytes);
     let definitions = Definitions::of(&header)?;
     let mut rows = Vec::new();
-    let numbers = |definition: &Definition, frame: &[i64]| -> Vec<i64> {
+    let numbers = |definition: &FrameDefinition, frame: &[i64]| -> Vec<i64> {
         frame.iter().enumerate().map(|(i, value)| definition.number(i, *value)).collect()
     };
-    let tally = Decoder::new(bytes, &header, &definitions)?.run(header.end, |time, frame| {
+    let tally = FrameDecoder::new(bytes, &header, &definitions)?.run(header.end, |time, frame| {
         rows.push(match frame {
-            Frame::Main(frame) => ('I', time, numbers(&definitions.intra, frame)),
-            Frame::Gps(frame) => ('G', time, numbers(&definitions.gps, frame)),
-            Frame::Slow(frame) => ('S', time, numbers(&definitions.slow, frame)),
-            Frame::Event(event) => ('E', time, vec![event.kind.into(), event.first as i64, event.second as i64]),
+            DecodedFrame::Main(frame) => ('I', time, numbers(&definitions.intra, frame)),
+            DecodedFrame::Gps(frame) => ('G', time, numbers(&definitions.gps, frame)),
+            DecodedFrame::Slow(frame) => ('S', time, numbers(&definitions.slow, frame)),
+            DecodedFrame::Event(event) => ('E', time, vec![event.kind.into(), event.first as i64, event.second as i64]),
         });
     });
     Ok((rows, tally))

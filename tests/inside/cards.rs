@@ -2,8 +2,8 @@
 //! watched.
 
 use racer::model::effects::{
-    self, Actuator, AerodynamicForces, BatteryLoad, BodyRates as Rates, COUNT, Card, CommandDelay, EffectValues,
-    LOG_COUNT, Quantity, RelativeWind, Role, Sensed, Setpoint, ThrustInput,
+    self, Actuator, AerodynamicForces, BatteryLoad, BodyRates as Rates, COUNT, Card, CommandDelay, CommandSetpoint,
+    EffectValues, LOG_COUNT, Quantity, RelativeWind, Role, Sensed, ThrustInput,
 };
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -47,7 +47,7 @@ fn passages() -> Vec<Passage> {
     };
     let setpoint: fn(&[f64], &mut [f64]) = |k, v| {
         let (rates, tau, max_rate) = (three(&v[5..]), four(&v[8..]), three(&v[12..]));
-        let mut s = Setpoint { command: four(v), throttle: v[4], rates, tau, max_rate };
+        let mut s = CommandSetpoint { command: four(v), throttle: v[4], rates, tau, max_rate };
         effects::setpoint(&values(k), &mut s);
         v[..4].copy_from_slice(&s.command);
     };

@@ -3,7 +3,7 @@
 
 use crate::support::feed::{READERS, feed};
 use crate::{blackbox, mcap};
-use racer::base::rng::{Philox, Stream};
+use racer::base::rng::{Philox, RngStream};
 use racer::flight::write;
 use racer::learn::nn::Network;
 use racer::race::config::Setup;
@@ -73,7 +73,7 @@ fn settings(folder: &Path) -> Vec<Vec<u8>> {
 /// A policy that was never trained.
 fn policy() -> Vec<u8> {
     let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).unwrap();
-    let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(Stream::Weights, 0, 0));
+    let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(RngStream::Weights, 0, 0));
     let about = About { track, vehicle, env: config.env, eval: config.eval, seed: 3, steps: 7, seconds: 0.1 };
     Snapshot { network, about }.to_bytes().unwrap()
 }

@@ -2,7 +2,7 @@
 //! it is hardly there.
 
 use racer::base::lane::Level;
-use racer::base::rng::{Philox, Stream};
+use racer::base::rng::{Philox, RngStream};
 use racer::model::dynamics::extended::Extended;
 use racer::model::dynamics::{Craft, Factors, Parameters, State, step};
 use racer::model::effects::{self, COUNT, Card, LOG_COUNT, MODEL, Sensed};
@@ -423,7 +423,7 @@ fn draws_are_joint() {
     let n = 2000;
     let (mut mean, mut square) = ([0.0; 2], [[0.0; 2]; 2]);
     for draw in 0..n {
-        let by = extension.draw(&mut rng.sequence(Stream::Reset, draw, 0));
+        let by = extension.draw(&mut rng.sequence(RngStream::Reset, draw, 0));
         assert_eq!(by.iter().filter(|k| **k != 0.0).count(), 2);
         let x = at.map(|i| by[i]);
         for i in 0..2 {

@@ -4,7 +4,7 @@
 //! `RACER_REQUIRE_PYTHON` is set.
 
 use crate::support::{python, skipped};
-use racer::present::export::{Exported, Format};
+use racer::present::export::{ExportFormat, Exported};
 use racer::race::snapshot::Snapshot;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ const STRICT: [&str; 6] = ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-ped
 const SOURCES: [&str; 4] = ["racer_policy.c", "racer_policy_data.c", "racer_self_test.c", "racer_self_test_data.c"];
 
 /// An export of the golden policy in a folder of its own.
-fn exported(format: Format) -> TempDir {
+fn exported(format: ExportFormat) -> TempDir {
     let bytes = std::fs::read(POLICY).unwrap();
     let exported = Exported::new(Snapshot::read(Path::new(POLICY)).unwrap(), &bytes).unwrap();
     let folder = TempDir::new().unwrap();
@@ -69,7 +69,7 @@ fn c_compiles_without_a_warning_and_passes_its_self_test() {
         if !there(compiler) {
             continue;
         }
-        let folder = exported(Format::C);
+        let folder = exported(ExportFormat::C);
         let sane = ["-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
         let out = host(compiler, &sane, folder.path(), &board("host.c"));
         assert!(out.contains("recorded flags 0 fine 1") && out.contains("self_test 0"), "{out}");
@@ -94,7 +94,7 @@ fn the_self_test_of_an_export_can_fail() {
         return;
     }
     for name in ["racer_weight_1", "racer_bias_2", "racer_gates", "racer_scale", "racer_share", "racer_full_rate"] {
-        let folder = exported(Format::C);
+        let folder = exported(ExportFormat::C);
         let path = folder.path().join("racer_policy_data.c");
         let text = std::fs::read_to_string(&path).unwrap();
         let at = text.find(name).unwrap_or_else(|| panic!("no {name}"));
@@ -113,7 +113,7 @@ fn c_runs_on_emulated_boards() {
     if !there("arm-none-eabi-gcc") || !there("qemu-system-arm") {
         return;
     }
-    let folder = exported(Format::C);
+    let folder = exported(ExportFormat::C);
     for (cpu, fpu, machine) in [("cortex-m4", "fpv4-sp-d16", "mps2-an386"), ("cortex-m7", "fpv5-sp-d16", "mps2-an500")]
     {
         let program = folder.path().join(cpu);
@@ -165,7 +165,7 @@ fn python_flies_a_lap_from_the_file_alone() {
 
 #[test]
 fn onnx_answers_as_the_policy_does() {
-    let (model, document) = (exported(Format::Onnx), exported(Format::Json));
+    let (model, document) = (exported(ExportFormat::Onnx), exported(ExportFormat::Json));
     let args = [
         Path::new("tests/python/onnx_policy.py"),
         &model.path().join("policy.onnx"),
@@ -179,7 +179,7 @@ fn onnx_answers_as_the_policy_does() {
 
 #[test]
 fn json_is_the_whole_file() {
-    let folder = exported(Format::Json);
+    let folder = exported(ExportFormat::Json);
     let document: Value = serde_json::from_slice(&std::fs::read(folder.path().join("policy.json")).unwrap()).unwrap();
     assert_eq!(document["format"], "racer-policy-3");
     assert_eq!(document["sha256"].as_str().map(str::len), Some(64));

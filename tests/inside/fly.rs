@@ -1,7 +1,7 @@
 //! Recorded flights are those of the model, and their sensors err as configured.
 
 use racer::base::lane::Level;
-use racer::base::rng::{Philox, Stream};
+use racer::base::rng::{Philox, RngStream};
 use racer::flight::fly::{by_pilot, by_policy};
 use racer::flight::pilot::Manoeuvre;
 use racer::flight::sensors::SensorConfig;
@@ -115,7 +115,7 @@ fn errors_of_the_sensors_are_those_configured() {
 fn a_policy_flies_as_it_is_scored() {
     let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).expect("built in");
     let race = Race::new(&config.env, &track, &vehicle, 1).scored(&track);
-    let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(Stream::Weights, 0, 0));
+    let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(RngStream::Weights, 0, 0));
     let scored = racer::race::eval::fly::fly(Level::best(), &race, &network, StartPlace::Pad, 1, 300);
     let flown = by_policy(Level::best(), &race, &network, &sensors("ideal"), 1, 3.0);
     assert_eq!(flown.log.setpoint.len(), scored.trace.len());

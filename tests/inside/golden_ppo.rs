@@ -2,7 +2,7 @@
 
 use racer::base::lane::{LANES, Level, Portable, Real};
 use racer::learn::nn::{Layer, Network};
-use racer::learn::ppo::batch::Batch;
+use racer::learn::ppo::batch::Minibatch;
 use racer::learn::ppo::gae;
 use racer::learn::ppo::loss::Weights;
 use racer::learn::ppo::update::{Hyper, Losses, Updater};
@@ -68,7 +68,7 @@ fn hyper(golden: &Value, squashed: bool) -> Hyper {
 fn step<E, F>(cast: fn(f64) -> E, squashed: bool, run: F) -> (Losses, Vec<f64>, Vec<f64>)
 where
     E: Real<Mask = bool> + PartialOrd + Default + Into<f64>,
-    F: FnOnce(&mut Updater<E>, &mut Network<E>, &Batch<E>, &[u32], &Hyper) -> Losses,
+    F: FnOnce(&mut Updater<E>, &mut Network<E>, &Minibatch<E>, &[u32], &Hyper) -> Losses,
 {
     let golden = golden();
     let convert = |x: Vec<f64>| -> Vec<E> { x.into_iter().map(cast).collect() };
@@ -77,8 +77,13 @@ where
     network.parameters.iter_mut().zip(exact.parameters.iter()).for_each(|(to, &from)| *to = cast(from));
     let [observations, z, log_prob, advantages, returns] =
         ["observations", "z", "old_log_prob", "advantages", "returns"].map(|name| convert(rows(&golden[name])));
-    let batch =
-        Batch { observations: &observations, z: &z, log_prob: &log_prob, advantages: &advantages, returns: &returns };
+    let batch = Minibatch {
+        observations: &observations,
+        z: &z,
+        log_prob: &log_prob,
+        advantages: &advantages,
+        returns: &returns,
+    };
     let order: Vec<u32> = (0..(advantages.len() / LANES) as u32).collect();
     let mut updater = Updater::new(&network);
     let losses = run(&mut updater, &mut network, &batch, &order, &hyper(&golden, squashed));

@@ -1,10 +1,10 @@
 //! Every hand-written derivative against central differences in double precision, term by term of the loss.
 
 use racer::base::lane::{LANES, Portable};
-use racer::base::rng::{Philox, Stream};
+use racer::base::rng::{Philox, RngStream};
 use racer::learn::nn::Network;
 use racer::learn::policy::log_prob_of;
-use racer::learn::ppo::batch::Batch;
+use racer::learn::ppo::batch::Minibatch;
 use racer::learn::ppo::loss::Weights;
 use racer::learn::ppo::update::Updater;
 use rand::RngExt;
@@ -15,7 +15,7 @@ const INPUTS: usize = 11;
 
 /// A network with weights of ordinary size everywhere, and a batch on which some ratios are clipped and some are not.
 fn example() -> (Network<f64>, [Vec<f64>; 5]) {
-    let mut rng = Philox::new(5).sequence(Stream::Weights, 0, 0);
+    let mut rng = Philox::new(5).sequence(RngStream::Weights, 0, 0);
     let mut network = Network::<f64>::zeros(INPUTS);
     for shape in [network.actor.clone(), network.critic.clone()] {
         for index in 0..3 {
@@ -49,8 +49,13 @@ fn example() -> (Network<f64>, [Vec<f64>; 5]) {
 
 fn check(name: &str, weights: Weights) {
     let (mut network, [observations, z, log_prob, advantages, returns]) = example();
-    let batch =
-        Batch { observations: &observations, z: &z, log_prob: &log_prob, advantages: &advantages, returns: &returns };
+    let batch = Minibatch {
+        observations: &observations,
+        z: &z,
+        log_prob: &log_prob,
+        advantages: &advantages,
+        returns: &returns,
+    };
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let mut updater = Updater::new(&network);
     let losses = updater.differentiate::<Portable<f64>>(&network, &batch, &rows, &weights);

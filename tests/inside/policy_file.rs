@@ -4,7 +4,7 @@ use racer::base::lane::Level;
 use racer::race::env::reset::StartPlace;
 use racer::race::eval::{EvalConfig, benchmark};
 use racer::race::onboard::Surroundings;
-use racer::race::snapshot::self_test::{self, LEAST, Rows};
+use racer::race::snapshot::self_test::{self, LEAST, SelfTestRows};
 use racer::race::snapshot::{About, Snapshot};
 use serde_json::Value;
 use std::path::Path;
@@ -64,7 +64,7 @@ fn the_self_test_fails_for_every_wrong_convention() {
     let rows = snapshot.content().unwrap().rows;
     let around = Surroundings::of(&snapshot.about.track, &snapshot.about.vehicle);
     rows.check(&snapshot.network, &around).unwrap();
-    let refused = |what: &str, rows: &Rows, around: &Surroundings| {
+    let refused = |what: &str, rows: &SelfTestRows, around: &Surroundings| {
         assert!(rows.check(&snapshot.network, around).is_err(), "{what} is not noticed");
     };
     let turned = |change: &dyn Fn(&mut [f32; self_test::STATE])| {
@@ -95,7 +95,7 @@ fn the_self_test_fails_for_every_wrong_convention() {
     refused("thrust coefficients in the other order", &rows, &other);
 }
 
-fn turned_by_one(rows: &Rows) -> Rows {
+fn turned_by_one(rows: &SelfTestRows) -> SelfTestRows {
     let mut late = rows.clone();
     late.state.rotate_right(1);
     late

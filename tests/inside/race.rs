@@ -1,7 +1,7 @@
 //! The rules of the race: passing and missing gates, ends of episodes, resets, rewards, observations.
 
 use racer::base::lane::{LANES, Lane, Portable};
-use racer::base::rng::{Philox, Stream};
+use racer::base::rng::{Philox, RngStream};
 use racer::model::dynamics::{Craft, Factors, State};
 use racer::model::track::Track;
 use racer::model::vehicle::Vehicle;
@@ -147,7 +147,7 @@ fn starts() {
     let (race, track) = race("");
     let rng = Philox::new(3);
     for i in 0..5000 {
-        let start = reset::draw(&race, &mut rng.sequence(Stream::Reset, i, 0), StartPlace::Spline, None);
+        let start = reset::draw(&race, &mut rng.sequence(RngStream::Reset, i, 0), StartPlace::Spline, None);
         let p: nalgebra::Vector3<f64> = start.craft.state.position.into();
         assert!(track.volume.contains(&p), "{p}");
         let gate = &track.gates[start.target];
@@ -159,7 +159,7 @@ fn starts() {
         assert!(speed <= race.config.reset.speed_m_s[1]);
         assert!((22.2..24.0).contains(&start.craft.state.voltage));
     }
-    let pad = reset::draw(&race, &mut rng.sequence(Stream::Reset, 0, 0), StartPlace::Pad, Some(Factors::NOMINAL));
+    let pad = reset::draw(&race, &mut rng.sequence(RngStream::Reset, 0, 0), StartPlace::Pad, Some(Factors::NOMINAL));
     assert_eq!((pad.craft.state.position, pad.target, pad.craft.state.voltage), (track.start.position_m, 0, 24.0));
 }
 
@@ -170,7 +170,7 @@ fn randomised_parameters() {
     let rng = Philox::new(9);
     let draws: Vec<[f64; 9]> = (0..4000)
         .map(|i| {
-            let f = race.config.randomize.draw(&mut rng.sequence(Stream::Reset, i, 0));
+            let f = race.config.randomize.draw(&mut rng.sequence(RngStream::Reset, i, 0));
             let [a, b, c, d] = f.time_constant;
             let [x, y, z] = f.max_rate;
             [a, b, c, d, x, y, z, f.thrust, f.drag]

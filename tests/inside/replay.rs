@@ -6,7 +6,7 @@
 
 use crate::support::{python, skipped};
 use racer::base::lane::Level;
-use racer::base::rng::{Philox, Stream};
+use racer::base::rng::{Philox, RngStream};
 use racer::flight::Log;
 use racer::learn::nn::Network;
 use racer::model::track::Track;
@@ -43,7 +43,7 @@ fn log(track: &Track) -> Log {
 
 fn untrained(vehicles: usize) -> Replay {
     let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).unwrap();
-    let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(Stream::Weights, 0, 0));
+    let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(RngStream::Weights, 0, 0));
     race(Level::best(), &Race::new(&config.env, &track, &vehicle, 3), &track, &network, vehicles, 3.0, false)
 }
 
@@ -74,7 +74,7 @@ fn the_first_vehicle_is_nominal_and_the_others_are_not() {
 #[test]
 fn figures_of_flights_are_drawn() {
     let Setup { config, track, vehicle } = Setup::load("a2rl", &[]).unwrap();
-    let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(Stream::Weights, 0, 0));
+    let network = Network::initialised(OBSERVATIONS, -0.5, &mut Philox::new(3).sequence(RngStream::Weights, 0, 0));
     let race = Race::new(&config.env, &track, &vehicle, 3);
     let spread = spread(Level::best(), &race, &track, &network, 20, 100);
     assert_eq!((spread.nominal.len() > 10, spread.randomised.len()), (true, 20));

@@ -8,7 +8,7 @@ use racer::present::run::metrics::{self, LogRow, METRICS};
 use racer::present::run::{DIVERGED, POLICY, Run, SNAPSHOTS};
 use racer::present::train::{Ended, TrainingWatch, make, resume};
 use racer::race::config::{Setting, Setup};
-use racer::race::env::tally::Tally;
+use racer::race::env::tally::RaceTally;
 use racer::race::snapshot::Snapshot;
 use std::path::{Path, PathBuf};
 
@@ -32,7 +32,7 @@ struct Watch {
 }
 
 impl TrainingWatch for Watch {
-    fn iteration(&mut self, _: &Iteration<Tally>, _: &LogRow) {
+    fn iteration(&mut self, _: &Iteration<RaceTally>, _: &LogRow) {
         self.done += 1;
     }
     fn remark(&mut self, text: &str) {

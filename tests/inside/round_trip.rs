@@ -1,7 +1,7 @@
 //! Random vehicles, flown in the independent simulator and identified from what its sensors logged.
 
 use crate::truth;
-use racer::insight::identify::estimate::Estimate;
+use racer::insight::identify::estimate::Estimated;
 use racer::insight::identify::result::Identification;
 use racer::insight::identify::{IdentifyOptions, identify};
 use racer::insight::quality::{Severity, check};
@@ -36,7 +36,7 @@ fn fly_and_identify(seed: u64) -> (truth::Vehicle, Identification) {
 fn judge(vehicle: &truth::Vehicle, found: &Identification) -> Vec<Judged> {
     let mut out = Vec::new();
     let truth = vehicle.truth();
-    let mut add = |name: String, estimate: &Estimate, truth: f64, limit: f64| {
+    let mut add = |name: String, estimate: &Estimated, truth: f64, limit: f64| {
         let value = estimate.value.unwrap_or(f64::NAN);
         let inside = estimate.interval().is_some_and(|[low, high]| (low..=high).contains(&truth));
         out.push(Judged { name, error: (value - truth) / truth, limit, inside });

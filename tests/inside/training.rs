@@ -4,7 +4,7 @@ use racer::base::lane::Level;
 use racer::learn::ppo::train::{Flow, Iteration, Observer, TrainedNetworks, train};
 use racer::race::config::{Config, Setting};
 use racer::race::env::Race;
-use racer::race::env::tally::Tally;
+use racer::race::env::tally::RaceTally;
 
 #[derive(Default)]
 struct Log {
@@ -14,7 +14,7 @@ struct Log {
 }
 
 impl Observer<Race> for Log {
-    fn iteration(&mut self, iteration: &Iteration<Tally>) -> Flow {
+    fn iteration(&mut self, iteration: &Iteration<RaceTally>) -> Flow {
         self.gates_per_episode.push(iteration.tally.episode_gates / iteration.tally.episodes().max(1.0));
         if iteration.index == self.stop_after { Flow::Stop } else { Flow::Continue }
     }

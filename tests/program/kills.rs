@@ -102,18 +102,17 @@ fn what_a_killed_training_leaves_is_whole_and_goes_on_to_the_same_policies() {
             }
             (first_s, kills) = (if kills == 0 { time } else { first_s }, kills + 1);
             found = whole(&run);
-            let begun = run.join("checkpoints").is_dir();
-            (args, went_on) = match begun {
-                true => {
-                    (vec!["train", "--resume", &name], if found.2 > 0 { "from a checkpoint" } else { "from the start" })
-                }
-                false => {
-                    // Not even the configuration was whole: it says so, and is begun anew.
-                    let ran = racer(at.path(), &["train", "--resume", &name]);
-                    assert!(ran.code == 2 || ran.code == 0, "{}", ran.err);
-                    let _ = std::fs::remove_dir_all(&run);
-                    (args, "anew")
-                }
+            (args, went_on) = if run.join("checkpoints").is_dir() {
+                (vec!["train", "--resume", &name], if found.2 > 0 { "from a checkpoint" } else { "from the start" })
+            } else if run.join("policy.safetensors").is_file() {
+                // Killed between its last file and its end.
+                (vec!["train", "--resume", &name], "was finished")
+            } else {
+                // Not even the configuration was whole: it says so, and is begun anew.
+                let ran = racer(at.path(), &["train", "--resume", &name]);
+                assert!(ran.code == 2 || ran.code == 0, "{}", ran.err);
+                let _ = std::fs::remove_dir_all(&run);
+                ([&["train", "--out", &name][..], &words(TINY)].concat(), "anew")
             };
         }
         if kills > 0 {

@@ -7,8 +7,8 @@
 //! `FOLDER/1.main.csv` has the main frames of the first flight, each with the slow frame before it, `FOLDER/1.gps.csv`
 //! its GPS frames. A line a flight is printed: number, firmware, rows, and flight-mode and disarm events.
 
-use racer::flight::blackbox::decoder::{Decoder, Frame};
-use racer::flight::blackbox::definition::{Definition, Definitions};
+use racer::flight::blackbox::decoder::{DecodedFrame, FrameDecoder};
+use racer::flight::blackbox::definition::{Definitions, FrameDefinition};
 use racer::flight::blackbox::header::Header;
 use racer::flight::blackbox::split;
 use std::fs::File;
@@ -32,7 +32,7 @@ fn main() -> Result<(), Failure> {
 fn write(bytes: &[u8], number: usize, folder: &Path) -> Result<(), Failure> {
     let header = Header::of(bytes);
     let definitions = Definitions::of(&header)?;
-    let decoder = Decoder::new(bytes, &header, &definitions)?;
+    let decoder = FrameDecoder::new(bytes, &header, &definitions)?;
     let create = |name: &str| File::create(folder.join(format!("{number}.{name}.csv"))).map(BufWriter::new);
     let (mut main, mut gps) = (create("main")?, create("gps")?);
     let Definitions { intra, gps: of_gps, slow: of_slow, .. } = &definitions;
@@ -46,17 +46,17 @@ fn write(bytes: &[u8], number: usize, folder: &Path) -> Result<(), Failure> {
     let (mut failed, mut events) = (None, 0);
     let tally = decoder.run(header.end, |time, frame| {
         let written = match frame {
-            Frame::Main(frame) => writeln!(main, "{}{slow}", &line(intra, frame, time)[1..]),
-            Frame::Gps(frame) => {
+            DecodedFrame::Main(frame) => writeln!(main, "{}{slow}", &line(intra, frame, time)[1..]),
+            DecodedFrame::Gps(frame) => {
                 let rest: Vec<_> = (0..frame.len()).filter(|&i| of_gps.names[i] != "time").collect();
                 let cells: String = rest.iter().map(|&i| format!(",{}", of_gps.number(i, frame[i]))).collect();
                 writeln!(gps, "{time}{cells}")
             }
-            Frame::Slow(frame) => {
+            DecodedFrame::Slow(frame) => {
                 slow = line(of_slow, frame, time);
                 Ok(())
             }
-            Frame::Event(event) => {
+            DecodedFrame::Event(event) => {
                 events += usize::from([15, 30].contains(&event.kind));
                 Ok(())
             }
@@ -68,7 +68,7 @@ fn write(bytes: &[u8], number: usize, folder: &Path) -> Result<(), Failure> {
 }
 
 /// The numbers of a frame, a comma before each. The time is the one without overflow.
-fn line(definition: &Definition, frame: &[i64], time: i64) -> String {
+fn line(definition: &FrameDefinition, frame: &[i64], time: i64) -> String {
     let number = |i: usize| if definition.names[i] == "time" { time } else { definition.number(i, frame[i]) };
     (0..frame.len()).map(|i| format!(",{}", number(i))).collect()
 }

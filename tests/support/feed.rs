@@ -1,7 +1,7 @@
 //! Any bytes to each of racer's readers, as the fuzz targets and the test of their corpus do.
 
 use racer::base::document::Document;
-use racer::flight::blackbox::decoder::Decoder;
+use racer::flight::blackbox::decoder::FrameDecoder;
 use racer::flight::blackbox::definition::Definitions;
 use racer::flight::blackbox::header::Header;
 use racer::flight::blackbox::split;
@@ -48,7 +48,7 @@ fn frames(bytes: &[u8]) -> bool {
     for flight in split(bytes) {
         let header = Header::of(flight);
         let Ok(definitions) = Definitions::of(&header) else { continue };
-        let Ok(decoder) = Decoder::new(flight, &header, &definitions) else { continue };
+        let Ok(decoder) = FrameDecoder::new(flight, &header, &definitions) else { continue };
         let mut rows = 0;
         let tally = decoder.run(header.end, |_, _| rows += 1);
         assert!(rows <= flight.len() / 4 + 1024 && tally.end <= flight.len(), "{tally:?}");

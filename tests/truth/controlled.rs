@@ -4,7 +4,7 @@
 
 use super::CONTROL_S;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
-use racer::flight::pilot::{Limits, Pilot, Seen};
+use racer::flight::pilot::{Pilot, PilotLimits, Seen};
 use racer::flight::{Log, VehicleRecord, motors};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -178,7 +178,7 @@ pub fn fly(vehicle: &Controlled, seed: u64, seconds: f64, speeds: bool) -> Log {
     let (mass_kg, max_rate_rad_s) = (Some(vehicle.mass), Some(vehicle.full_rate));
     log.vehicle = VehicleRecord { mass_kg, max_rate_rad_s, ..VehicleRecord::default() };
     let hover_command = 2.0 * vehicle.hover() - 1.0;
-    let limits = Limits { max_rate_rad_s: vehicle.full_rate, hover_command, seconds, empty_v: 0.0 };
+    let limits = PilotLimits { max_rate_rad_s: vehicle.full_rate, hover_command, seconds, empty_v: 0.0 };
     let mut pilot = Pilot::new(seed, limits);
     let mut controller = Controller::default();
     let mut craft = Craft {

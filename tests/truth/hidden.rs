@@ -26,7 +26,7 @@ use link::Link;
 use motion::Inputs;
 use motors::Controller;
 use race::Racer;
-use racer::flight::pilot::{Limits, Pilot, Seen};
+use racer::flight::pilot::{Pilot, PilotLimits, Seen};
 use racer::flight::{Log, VehicleRecord};
 use sense::Sensors;
 use weather::Weather;
@@ -69,7 +69,7 @@ impl World {
 pub fn fly(vehicle: &Vehicle, hidden: &[Hidden], setting: &Setting) -> Log {
     let world = World::new(vehicle, hidden);
     // Who flies knows the vehicle without what is hidden, and lands by the clock: a sagging pack is no empty one.
-    let limits = Limits { empty_v: 0.0, ..super::limits(vehicle, setting.seed, setting.seconds) };
+    let limits = PilotLimits { empty_v: 0.0, ..super::limits(vehicle, setting.seed, setting.seconds) };
     let mut time_s = 0.0;
     match setting.style {
         Style::Excited => {

@@ -21,7 +21,7 @@ pub mod thrust;
 pub mod vehicle;
 
 use integrate::step;
-use racer::flight::pilot::{Limits, Pilot, Seen};
+use racer::flight::pilot::{Pilot, PilotLimits, Seen};
 use racer::flight::{Log, VehicleRecord};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -47,11 +47,11 @@ pub fn fly(vehicle: &Vehicle, seed: u64, seconds: f64, noise: f64) -> Log {
 }
 
 /// What the pilot is told: a hover command that is up to 15 % of the weight off.
-pub fn limits(vehicle: &Vehicle, seed: u64, seconds: f64) -> Limits {
+pub fn limits(vehicle: &Vehicle, seed: u64, seconds: f64) -> PilotLimits {
     let mut rng = StdRng::seed_from_u64(seed ^ 0x5eed);
     let volts = 0.5 * (vehicle.full_v + vehicle.empty_v);
     let hover = vehicle.command_for(vehicle.gravity * rng.random_range(0.85..1.15), volts);
-    Limits { max_rate_rad_s: vehicle.configured_rate, hover_command: hover, seconds, empty_v: vehicle.empty_v }
+    PilotLimits { max_rate_rad_s: vehicle.configured_rate, hover_command: hover, seconds, empty_v: vehicle.empty_v }
 }
 
 /// What the pilot sees at that moment.

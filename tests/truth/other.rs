@@ -20,7 +20,7 @@ use super::{CONTROL_S, Vehicle};
 pub use airframe::Airframe;
 use faults::Faults;
 use plant::Plant;
-use racer::flight::pilot::{Limits, Pilot, Seen};
+use racer::flight::pilot::{Pilot, PilotLimits, Seen};
 use racer::flight::{Log, VehicleRecord};
 use sense::Recorder;
 
@@ -31,7 +31,7 @@ const STEPS: usize = 20;
 /// The log of a flight of `airframe` with all of `hidden` in it.
 pub fn fly(airframe: &Airframe, hidden: &[Hidden], setting: &Setting) -> Log {
     let nominal = airframe.nominal();
-    let limits = Limits { empty_v: 0.0, ..super::limits(&nominal, setting.seed, setting.seconds) };
+    let limits = PilotLimits { empty_v: 0.0, ..super::limits(&nominal, setting.seed, setting.seconds) };
     match setting.style {
         Style::Excited => {
             let mut pilot = Pilot::new(setting.seed, limits);

@@ -18,10 +18,12 @@ pub fn find(text: &str, key: &str) -> Option<Found> {
     let (mut value, mut start, mut whole) = (&root, None, true);
     for step in steps(key) {
         let next = match (&step, value) {
-            (Step::Key(name), DeValue::Table(table)) => {
+            (PathStep::Key(name), DeValue::Table(table)) => {
                 table.iter().find(|(key, _)| key.get_ref() == name).map(|(key, value)| (key.span().start, value))
             }
-            (Step::Index(index), DeValue::Array(array)) => array.get(*index).map(|value| (value.span().start, value)),
+            (PathStep::Index(index), DeValue::Array(array)) => {
+                array.get(*index).map(|value| (value.span().start, value))
+            }
             _ => None,
         };
         match next {
@@ -40,17 +42,17 @@ pub fn line_at(text: &str, offset: usize) -> usize {
     text.bytes().take(offset).filter(|&byte| byte == b'\n').count() + 1
 }
 
-enum Step<'a> {
+enum PathStep<'a> {
     Key(&'a str),
     Index(usize),
 }
 
-fn steps(key: &str) -> Vec<Step<'_>> {
+fn steps(key: &str) -> Vec<PathStep<'_>> {
     let mut steps = Vec::new();
     for part in key.split('.') {
         let mut pieces = part.split('[');
-        steps.extend(pieces.next().filter(|name| !name.is_empty()).map(Step::Key));
-        steps.extend(pieces.filter_map(|piece| piece.trim_end_matches(']').parse().ok().map(Step::Index)));
+        steps.extend(pieces.next().filter(|name| !name.is_empty()).map(PathStep::Key));
+        steps.extend(pieces.filter_map(|piece| piece.trim_end_matches(']').parse().ok().map(PathStep::Index)));
     }
     steps
 }

@@ -2,9 +2,9 @@
 //!
 //! Firmware logs from arming on. That it is disarmed is told by an event, or by the switch of the flight modes.
 
-use super::definition::Definition;
+use super::definition::FrameDefinition;
 use super::event::{DISARM, Event};
-use super::fields::Rows;
+use super::fields::GrowingRows;
 use super::header::Header;
 use crate::flight::table::Table;
 
@@ -15,14 +15,14 @@ pub struct Armed {
     /// Place of the flight modes in slow frames, where the first of them is being armed.
     modes: Option<usize>,
     now: Option<bool>,
-    rows: Rows,
+    rows: GrowingRows,
 }
 
 impl Armed {
-    pub fn new(slow: &Definition, header: &Header) -> Self {
+    pub fn new(slow: &FrameDefinition, header: &Header) -> Self {
         let place = || slow.names.iter().position(|name| name == "flightModeFlags");
         let modes = header.betaflight().filter(|version| *version >= MODES_SINCE).and_then(|_| place());
-        Self { modes, now: None, rows: Rows::new(1) }
+        Self { modes, now: None, rows: GrowingRows::new(1) }
     }
 
     fn set(&mut self, time_us: i64, armed: bool) {

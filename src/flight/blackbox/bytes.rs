@@ -1,11 +1,11 @@
 //! Numbers as blackbox frames pack them, from a place in the file onwards. `None` where the file ends first.
 
-pub struct Bytes<'a> {
+pub struct FrameBytes<'a> {
     bytes: &'a [u8],
     pub at: usize,
 }
 
-impl<'a> Bytes<'a> {
+impl<'a> FrameBytes<'a> {
     pub fn new(bytes: &'a [u8], at: usize) -> Self {
         Self { bytes, at }
     }
@@ -63,11 +63,12 @@ mod tests {
 
     #[test]
     fn variable_bytes() {
-        let mut bytes = Bytes::new(&[0x7f, 0xff, 0xff, 0xff, 0xff, 0x0f, 3, 0xff, 0xff, 0xff, 0xff, 0xff, 1, 0x80], 0);
+        let mut bytes =
+            FrameBytes::new(&[0x7f, 0xff, 0xff, 0xff, 0xff, 0x0f, 3, 0xff, 0xff, 0xff, 0xff, 0xff, 1, 0x80], 0);
         assert_eq!((bytes.unsigned(), bytes.unsigned(), bytes.signed()), (Some(127), Some(u32::MAX), Some(-2)));
         assert_eq!((bytes.unsigned(), bytes.at), (Some(0), 12), "longer than five bytes");
         assert_eq!((bytes.signed(), bytes.unsigned()), (Some(-1), None));
-        assert_eq!(Bytes::new(&[0, 0, 0x80], 0).little_endian(3), Some(-(1 << 23)));
+        assert_eq!(FrameBytes::new(&[0, 0, 0x80], 0).little_endian(3), Some(-(1 << 23)));
         assert_eq!((extend(0x3, 2), extend(0x1f, 6), extend(u32::MAX, 32)), (-1, 31, -1));
     }
 }

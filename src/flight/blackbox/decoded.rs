@@ -6,7 +6,7 @@ use super::scales::motor_stop;
 use crate::base::check::BadInput;
 use crate::flight::Readable;
 use crate::flight::csv::{self, files::Csv};
-use crate::flight::format::{Content, File, Format};
+use crate::flight::format::{Content, Format, LogFile};
 use crate::flight::mapping::Mapping;
 use crate::flight::table::{LOG_TIME, Table, Tables};
 use std::f64::consts::PI;
@@ -21,16 +21,16 @@ impl Format for Decoded {
         "CSV of blackbox_decode"
     }
 
-    fn recognises(&self, file: &File) -> bool {
+    fn recognises(&self, file: &LogFile) -> bool {
         let line = file.start().split(|&byte| byte == b'\n').next().unwrap_or_default();
         line.starts_with(b"loopIteration,") && line.windows(6).any(|window| window == b"time (")
     }
 
-    fn mapping(&self, _: &File) -> Result<(&'static str, Option<String>), BadInput> {
+    fn mapping(&self, _: &LogFile) -> Result<(&'static str, Option<String>), BadInput> {
         Ok(("betaflight", Some("its columns are those of blackbox_decode".into())))
     }
 
-    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
+    fn tables(&self, file: &LogFile, mapping: &Mapping) -> Result<Content, BadInput> {
         if !mapping.sources().contains("main") {
             // Somebody's own mapping, for its columns as they are.
             return Csv.tables(file, mapping);
@@ -68,7 +68,7 @@ fn tables(csv: Table, readable: Readable) -> (Tables, Vec<String>) {
 }
 
 /// The GPS frames, which blackbox_decode writes to a file of their own.
-fn beside(file: &File) -> Result<Option<Table>, BadInput> {
+fn beside(file: &LogFile) -> Result<Option<Table>, BadInput> {
     let path = file.path.with_extension("gps.csv");
     if !file.ends(&[".csv"]) || !path.is_file() {
         return Ok(None);

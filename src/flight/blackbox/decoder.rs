@@ -3,29 +3,29 @@
 //! A frame counts where it is followed by the letter of another, or by the end; else the next is looked for one byte
 //! further on. After damage, differences mean nothing until the next whole frame. blackbox_decode does the same.
 
-use super::bytes::Bytes;
-use super::definition::{Definition, Definitions};
+use super::bytes::FrameBytes;
+use super::definition::{Definitions, FrameDefinition};
 use super::event::{Event, LOG_END, LOGGING_RESUME};
 use super::header::Header;
 use super::predictor::Past;
-use super::sequence::Sequence;
-use super::tally::Tally;
+use super::sequence::FrameSequence;
+use super::tally::ByteTally;
 use std::ops::Range;
 
 /// A frame that was read: numbers as recorded, in the order of its definition.
-pub enum Frame<'a> {
+pub enum DecodedFrame<'a> {
     Main(&'a [i64]),
     Gps(&'a [i64]),
     Slow(&'a [i64]),
     Event(Event),
 }
 
-pub struct Decoder<'a> {
+pub struct FrameDecoder<'a> {
     /// Without the padding that follows it.
     bytes: &'a [u8],
     definitions: &'a Definitions,
     inav: bool,
-    main: Sequence,
+    main: FrameSequence,
     gps: Vec<i64>,
     gps_time: Option<usize>,
     slow: Vec<i64>,
@@ -35,20 +35,20 @@ pub struct Decoder<'a> {
     home_known: bool,
     /// The bytes before were no frame.
     searching: bool,
-    tally: Tally,
+    tally: ByteTally,
 }
 
-impl<'a> Decoder<'a> {
+impl<'a> FrameDecoder<'a> {
     /// Fails where main frames have no iteration or time.
     pub fn new(bytes: &'a [u8], header: &Header, definitions: &'a Definitions) -> Result<Self, String> {
-        let zeros = |definition: &Definition| vec![0; definition.names.len()];
+        let zeros = |definition: &FrameDefinition| vec![0; definition.names.len()];
         // Flash memory that was never written.
         let content = bytes.iter().rposition(|byte| *byte != 0xff).map_or(0, |last| last + 1);
         Ok(Self {
             bytes: &bytes[..content],
             definitions,
             inav: header.inav(),
-            main: Sequence::new(&definitions.intra.names, header)?,
+            main: FrameSequence::new(&definitions.intra.names, header)?,
             gps: zeros(&definitions.gps),
             gps_time: definitions.gps.names.iter().position(|name| name == "time"),
             slow: zeros(&definitions.slow),
@@ -56,19 +56,19 @@ impl<'a> Decoder<'a> {
             next_home: zeros(&definitions.home),
             home_known: false,
             searching: false,
-            tally: Tally::new(content),
+            tally: ByteTally::new(content),
         })
     }
 
     /// Reads from `start` on, and gives every frame with its time in microseconds to `sink`.
-    pub fn run(mut self, start: usize, mut sink: impl FnMut(i64, Frame)) -> Tally {
+    pub fn run(mut self, start: usize, mut sink: impl FnMut(i64, DecodedFrame)) -> ByteTally {
         // More frames would be shorter than any firmware writes them, and only fill the memory.
         let mut room = self.bytes.len() / 4 + 1024;
         let mut at = start;
         self.tally.end = start;
         while at < self.bytes.len() && !self.tally.closed {
             let letter = self.bytes[at];
-            let mut bytes = Bytes::new(self.bytes, at + 1);
+            let mut bytes = FrameBytes::new(self.bytes, at + 1);
             let event = self.read(letter, &mut bytes).filter(|event| self.ends(event, bytes.at));
             let Some(event) = event else {
                 (self.main.valid, self.searching) = (false, true);
@@ -90,7 +90,7 @@ impl<'a> Decoder<'a> {
 
     /// Reads a frame behind its letter. `None` where there is no such frame, or it breaks off; else the event, if it is
     /// one, and whether its kind is known.
-    fn read(&mut self, letter: u8, bytes: &mut Bytes) -> Option<Option<(Event, bool)>> {
+    fn read(&mut self, letter: u8, bytes: &mut FrameBytes) -> Option<Option<(Event, bool)>> {
         let Definitions { intra, inter, gps, home, slow } = self.definitions;
         let past = Past { previous: None, before: None, home: &self.home, main_time: self.main.time(), skipped: 0 };
         match letter {
@@ -119,7 +119,7 @@ impl<'a> Decoder<'a> {
         letter: u8,
         event: Option<(Event, bool)>,
         range: Range<usize>,
-        sink: &mut impl FnMut(i64, Frame),
+        sink: &mut impl FnMut(i64, DecodedFrame),
     ) {
         let now = self.main.last.map_or(0, |(_, time)| time);
         match (letter, event) {
@@ -127,14 +127,14 @@ impl<'a> Decoder<'a> {
                 Some(time) => {
                     self.tally.frames += 1;
                     self.tally.settle(range.end);
-                    sink(time, Frame::Main(self.main.latest()));
+                    sink(time, DecodedFrame::Main(self.main.latest()));
                 }
                 None => self.tally.lose(true, range.len()),
             },
             (b'G', _) => {
                 let time = self.gps_time.map_or(now, |i| self.main.unwrapped(self.gps[i]));
                 if self.home_known {
-                    sink(time, Frame::Gps(&self.gps));
+                    sink(time, DecodedFrame::Gps(&self.gps));
                 } else {
                     self.tally.homeless += 1;
                 }
@@ -143,7 +143,7 @@ impl<'a> Decoder<'a> {
                 self.home.copy_from_slice(&self.next_home);
                 self.home_known = true;
             }
-            (b'S', _) => sink(now, Frame::Slow(&self.slow)),
+            (b'S', _) => sink(now, DecodedFrame::Slow(&self.slow)),
             (_, Some((event, true))) => {
                 match event.kind {
                     LOGGING_RESUME => self.main.resume(event.first as u32, event.second as u32),
@@ -153,7 +153,7 @@ impl<'a> Decoder<'a> {
                     }
                     _ => {}
                 }
-                sink(now, Frame::Event(event));
+                sink(now, DecodedFrame::Event(event));
             }
             _ => {}
         }

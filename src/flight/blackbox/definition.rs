@@ -1,6 +1,6 @@
 //! The frames that a header declares: fields in order, and how each is predicted and packed.
 
-use super::bytes::Bytes;
+use super::bytes::FrameBytes;
 use super::encoding::Encoding;
 use super::header::Header;
 use super::predictor::{Past, Predictor};
@@ -11,7 +11,7 @@ const MOST_BYTES: usize = 256;
 
 /// A kind of frame. Its fields are empty where the header does not declare it.
 #[derive(Default)]
-pub struct Definition {
+pub struct FrameDefinition {
     pub names: Vec<String>,
     pub signed: Vec<bool>,
     predictors: Vec<Predictor>,
@@ -20,11 +20,11 @@ pub struct Definition {
 
 /// Kinds of frames by their letters: whole main frames, differences to those before, GPS, GPS home, slow.
 pub struct Definitions {
-    pub intra: Definition,
-    pub inter: Definition,
-    pub gps: Definition,
-    pub home: Definition,
-    pub slow: Definition,
+    pub intra: FrameDefinition,
+    pub inter: FrameDefinition,
+    pub gps: FrameDefinition,
+    pub home: FrameDefinition,
+    pub slow: FrameDefinition,
 }
 
 impl Definitions {
@@ -32,7 +32,7 @@ impl Definitions {
     pub fn of(header: &Header) -> Result<Self, String> {
         let main = header.list("Field I name");
         let home = header.list("Field H name");
-        let read = |kind: char, names: &[&str]| Definition::of(header, kind, names, &home);
+        let read = |kind: char, names: &[&str]| FrameDefinition::of(header, kind, names, &home);
         if main.is_empty() {
             return Err("no header line `Field I name`".into());
         }
@@ -47,7 +47,7 @@ impl Definitions {
     }
 }
 
-impl Definition {
+impl FrameDefinition {
     fn of(header: &Header, kind: char, names: &[&str], home: &[&str]) -> Result<Self, String> {
         if names.len() > MOST_FIELDS {
             return Err(format!("{} fields in a frame, where {MOST_FIELDS} are the most", names.len()));
@@ -77,7 +77,7 @@ impl Definition {
     }
 
     /// Reads a frame into `current`; `None` where the bytes end first or are too many for a frame.
-    pub fn read(&self, bytes: &mut Bytes, current: &mut [i64], past: &Past) -> Option<()> {
+    pub fn read(&self, bytes: &mut FrameBytes, current: &mut [i64], past: &Past) -> Option<()> {
         let (start, count) = (bytes.at, self.names.len());
         let mut values = [0; 8];
         let mut i = 0;

@@ -2,7 +2,7 @@
 //!
 //! The numbers are those of the header lines `Field I encoding`, the same in all firmware that writes data version 2.
 
-use super::bytes::{Bytes, extend};
+use super::bytes::{FrameBytes, extend};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
@@ -42,7 +42,7 @@ impl Encoding {
     }
 
     /// Reads one value or a group of them, and says how many. `alike` fields from here on have this encoding.
-    pub fn read(self, bytes: &mut Bytes, alike: usize, values: &mut [i64; 8]) -> Option<usize> {
+    pub fn read(self, bytes: &mut FrameBytes, alike: usize, values: &mut [i64; 8]) -> Option<usize> {
         match self {
             Encoding::Signed => values[0] = bytes.signed()?,
             Encoding::Unsigned => values[0] = i64::from(bytes.unsigned()?),
@@ -79,7 +79,7 @@ fn fourteen_bits(number: u32) -> i64 {
     if number & 0x2000 == 0 { i64::from(number & 0xffff) } else { extend(number, 14) }
 }
 
-fn even(bytes: &mut Bytes) -> Option<[i64; 3]> {
+fn even(bytes: &mut FrameBytes) -> Option<[i64; 3]> {
     let first = u32::from(bytes.byte()?);
     Some(match first >> 6 {
         0 => [extend(first >> 4, 2), extend(first >> 2, 2), extend(first, 2)],
@@ -92,7 +92,7 @@ fn even(bytes: &mut Bytes) -> Option<[i64; 3]> {
     })
 }
 
-fn uneven(bytes: &mut Bytes) -> Option<[i64; 3]> {
+fn uneven(bytes: &mut FrameBytes) -> Option<[i64; 3]> {
     let first = u32::from(bytes.byte()?);
     Some(match first >> 6 {
         0 => [extend(first >> 4, 2), extend(first >> 2, 2), extend(first, 2)],
@@ -109,14 +109,14 @@ fn uneven(bytes: &mut Bytes) -> Option<[i64; 3]> {
 }
 
 /// Three numbers of whole bytes; two bits of the tag for each.
-fn wide(tag: u32, bytes: &mut Bytes) -> Option<[i64; 3]> {
+fn wide(tag: u32, bytes: &mut FrameBytes) -> Option<[i64; 3]> {
     let mut number = |i: u32| bytes.little_endian(1 + (tag >> (2 * i) & 3));
     Some([number(0)?, number(1)?, number(2)?])
 }
 
 /// Half bytes, the upper one first.
 struct Nibbles<'b, 'a> {
-    bytes: &'b mut Bytes<'a>,
+    bytes: &'b mut FrameBytes<'a>,
     low: Option<u8>,
 }
 

@@ -1,6 +1,6 @@
 //! What happened beside the measured rows.
 
-use super::bytes::Bytes;
+use super::bytes::FrameBytes;
 
 /// An event, and up to two numbers that say more; NaN where it has none.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +17,7 @@ const LAST_WORDS: &[u8; 11] = b"End of log\0";
 
 impl Event {
     /// Reads what follows an `E`. Of a kind that nobody declared only the kind is read, and `known` is false.
-    pub fn read(bytes: &mut Bytes, inav: bool) -> Option<(Self, bool)> {
+    pub fn read(bytes: &mut FrameBytes, inav: bool) -> Option<(Self, bool)> {
         let kind = bytes.byte()?;
         let (mut first, mut second, mut known) = (f64::NAN, f64::NAN, true);
         match kind {

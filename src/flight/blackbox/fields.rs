@@ -1,6 +1,6 @@
 //! Fields of blackbox frames in physical units.
 
-use super::definition::Definition;
+use super::definition::FrameDefinition;
 use super::header::Header;
 use crate::base::check::BadInput;
 use crate::flight::table::{LOG_TIME, Table};
@@ -34,7 +34,7 @@ pub fn of_inav(name: &str) -> Option<&'static str> {
 }
 
 /// A field that is read: scale (x - zero), where x is what was recorded.
-pub struct Field {
+pub struct ScaledField {
     name: String,
     /// Its place in the frame; `None` where it was not recorded.
     index: Option<usize>,
@@ -43,7 +43,7 @@ pub struct Field {
     least: f64,
 }
 
-impl Field {
+impl ScaledField {
     pub fn absent(name: &str) -> Self {
         Self { name: name.into(), index: None, zero: 0.0, scale: 1.0, least: f64::NEG_INFINITY }
     }
@@ -76,19 +76,19 @@ impl Field {
         Ok(Self { name: name.into(), index: Some(index), zero, scale, least })
     }
 
-    fn value(&self, definition: &Definition, frame: &[i64]) -> f64 {
+    fn value(&self, definition: &FrameDefinition, frame: &[i64]) -> f64 {
         let Some(index) = self.index else { return f64::NAN };
         (self.scale * (definition.number(index, frame[index]) as f64 - self.zero)).max(self.least)
     }
 }
 
 /// Rows of a table that grows.
-pub struct Rows {
+pub struct GrowingRows {
     time_s: Vec<f64>,
     columns: Vec<Vec<f64>>,
 }
 
-impl Rows {
+impl GrowingRows {
     pub fn new(columns: usize) -> Self {
         Self { time_s: Vec::new(), columns: vec![Vec::new(); columns] }
     }
@@ -119,14 +119,14 @@ impl Rows {
 
 /// The fields of one kind of frame, and their rows.
 pub struct Recorded<'a> {
-    definition: &'a Definition,
-    fields: Vec<Field>,
-    pub rows: Rows,
+    definition: &'a FrameDefinition,
+    fields: Vec<ScaledField>,
+    pub rows: GrowingRows,
 }
 
 impl<'a> Recorded<'a> {
-    pub fn new(definition: &'a Definition, fields: Vec<Field>) -> Self {
-        let rows = Rows::new(fields.len());
+    pub fn new(definition: &'a FrameDefinition, fields: Vec<ScaledField>) -> Self {
+        let rows = GrowingRows::new(fields.len());
         Self { definition, fields, rows }
     }
 

@@ -1,6 +1,6 @@
 //! Fixes of a GPS, as metres from the first one, and metres a second.
 
-use super::definition::Definition;
+use super::definition::FrameDefinition;
 use super::header::Header;
 use crate::flight::table::Table;
 
@@ -37,7 +37,7 @@ pub struct Places {
 }
 
 impl Places {
-    pub fn new(definition: &Definition, header: &Header) -> Self {
+    pub fn new(definition: &FrameDefinition, header: &Header) -> Self {
         let place = |name: &str| definition.names.iter().position(|known| known == name);
         Self {
             coordinates: ["GPS_coord[0]", "GPS_coord[1]"].map(place),
@@ -50,7 +50,7 @@ impl Places {
 }
 
 impl Fixes {
-    pub fn push(&mut self, time_us: i64, places: &Places, definition: &Definition, frame: &[i64]) {
+    pub fn push(&mut self, time_us: i64, places: &Places, definition: &FrameDefinition, frame: &[i64]) {
         let value = |place: Option<usize>, scale: f64| {
             place.map_or(f64::NAN, |index| scale * definition.number(index, frame[index]) as f64)
         };

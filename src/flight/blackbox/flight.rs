@@ -2,12 +2,12 @@
 
 use super::armed::Armed;
 use super::attitude::Attitude;
-use super::decoder::{Decoder, Frame};
-use super::definition::{Definition, Definitions};
-use super::fields::{Field, Recorded, Rows, further_motor, of_inav, standard};
+use super::decoder::{DecodedFrame, FrameDecoder};
+use super::definition::{Definitions, FrameDefinition};
+use super::fields::{GrowingRows, Recorded, ScaledField, further_motor, of_inav, standard};
 use super::fixes::{DERIVED, Fixes, Places};
 use super::header::Header;
-use super::tally::Tally;
+use super::tally::ByteTally;
 use crate::base::check::BadInput;
 use crate::base::document::nearest;
 use crate::flight::format::FlightSummary;
@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 const EVENT: [&str; 3] = ["event", "first", "second"];
 
-pub struct Flight {
+pub struct BlackboxFlight {
     pub tables: Tables,
     pub span_s: f64,
     /// Time of its first main frame.
@@ -28,7 +28,7 @@ pub struct Flight {
     pub remarks: Vec<String>,
 }
 
-impl Flight {
+impl BlackboxFlight {
     /// In a line of a table of flights.
     pub fn summary(&self, number: usize) -> FlightSummary {
         FlightSummary { number, start_s: self.start_s, span_s: self.span_s, end: self.end.into() }
@@ -36,7 +36,7 @@ impl Flight {
 }
 
 /// Reads the (table, column) pairs that are `wanted`. Standard fields that were not recorded are NaN.
-pub fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Result<Flight, BadInput> {
+pub fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Result<BlackboxFlight, BadInput> {
     let bad =
         |found: String| BadInput::new(place, found, "a flight whose header declares its frames", "is it damaged?");
     let header = Header::of(bytes);
@@ -44,32 +44,32 @@ pub fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Resul
         return Err(bad(format!("data version {version}, where all firmware since 2015 writes 2")));
     }
     let definitions = Definitions::of(&header).map_err(bad)?;
-    let decoder = Decoder::new(bytes, &header, &definitions).map_err(bad)?;
+    let decoder = FrameDecoder::new(bytes, &header, &definitions).map_err(bad)?;
     let select = |table: &str, definition| select(table, definition, &header, place, wanted);
     let mut main = Recorded::new(&definitions.intra, select("main", &definitions.intra)?);
     let mut gps = Recorded::new(&definitions.gps, select("gps", &definitions.gps)?);
     let mut slow = Recorded::new(&definitions.slow, select("slow", &definitions.slow)?);
-    let mut events = Rows::new(EVENT.len());
+    let mut events = GrowingRows::new(EVENT.len());
     let (places, mut fixes) = (Places::new(&definitions.gps, &header), Fixes::default());
     let mut armed = Armed::new(&definitions.slow, &header);
     let mut attitude = Attitude::new(&definitions.intra);
     let tally = decoder.run(header.end, |time_us, frame| match frame {
-        Frame::Main(frame) => {
+        DecodedFrame::Main(frame) => {
             main.push(time_us, frame);
             armed.begin(time_us);
             if let Some(attitude) = &mut attitude {
                 attitude.push(time_us, &definitions.intra, frame);
             }
         }
-        Frame::Gps(frame) => {
+        DecodedFrame::Gps(frame) => {
             gps.push(time_us, frame);
             fixes.push(time_us, &places, &definitions.gps, frame);
         }
-        Frame::Slow(frame) => {
+        DecodedFrame::Slow(frame) => {
             slow.push(time_us, frame);
             armed.slow(time_us, frame);
         }
-        Frame::Event(event) => {
+        DecodedFrame::Event(event) => {
             events.push(time_us, [event.kind.into(), event.first, event.second]);
             armed.event(time_us, event);
         }
@@ -77,7 +77,7 @@ pub fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Resul
     let (span_s, start_s) = (main.rows.span_s(), main.rows.start_s());
     let end = match (&tally, armed.ended()) {
         (_, true) => "disarmed",
-        (Tally { closed: true, .. }, _) => "the log was closed",
+        (ByteTally { closed: true, .. }, _) => "the log was closed",
         _ => "the recording breaks off",
     };
     let mut remarks = remarks(&header, &tally);
@@ -94,17 +94,17 @@ pub fn read(bytes: &[u8], place: &str, wanted: &BTreeSet<(&str, &str)>) -> Resul
         }
     }
     let vehicle = VehicleRecord { max_rate_rad_s: header.max_rates_rad_s(), ..VehicleRecord::default() };
-    Ok(Flight { tables: Tables { tables, vehicle, readable: readable(&tally) }, span_s, start_s, end, remarks })
+    Ok(BlackboxFlight { tables: Tables { tables, vehicle, readable: readable(&tally) }, span_s, start_s, end, remarks })
 }
 
 /// The fields of a frame that are wanted.
 fn select(
     table: &str,
-    definition: &Definition,
+    definition: &FrameDefinition,
     header: &Header,
     place: &str,
     wanted: &BTreeSet<(&str, &str)>,
-) -> Result<Vec<Field>, BadInput> {
+) -> Result<Vec<ScaledField>, BadInput> {
     let known = || definition.names.iter().map(String::as_str);
     let position = |name: &str| known().position(|known| known == name);
     let mut fields = Vec::new();
@@ -114,9 +114,9 @@ fn select(
         }
         let alias = of_inav(column).filter(|_| header.inav());
         match position(column).or_else(|| position(alias?)) {
-            Some(index) => fields.push(Field::new(column, index, header, place)?),
+            Some(index) => fields.push(ScaledField::new(column, index, header, place)?),
             None if further_motor(column) => {}
-            None if standard().any(|name| name == *column) => fields.push(Field::absent(column)),
+            None if standard().any(|name| name == *column) => fields.push(ScaledField::absent(column)),
             None => {
                 let advice = match nearest(column, known()) {
                     Some(near) => format!("did you mean `{near}`?"),
@@ -130,11 +130,11 @@ fn select(
     Ok(fields)
 }
 
-fn readable(tally: &Tally) -> Readable {
+fn readable(tally: &ByteTally) -> Readable {
     let prefix = |why: &str| Readable::Prefix { bytes: tally.end as u64, of: tally.content as u64, why: why.into() };
     match tally {
-        Tally { crowded: true, .. } => prefix("its frames are shorter than any firmware writes"),
-        Tally { closed: true, .. } => Readable::Whole,
+        ByteTally { crowded: true, .. } => prefix("its frames are shorter than any firmware writes"),
+        ByteTally { closed: true, .. } => Readable::Whole,
         // Switched off in the air, or out of room.
         _ => prefix("the recording breaks off without its end-of-log event"),
     }
@@ -157,10 +157,10 @@ fn heading(definitions: &Definitions) -> Option<String> {
     )
 }
 
-fn remarks(header: &Header, tally: &Tally) -> Vec<String> {
+fn remarks(header: &Header, tally: &ByteTally) -> Vec<String> {
     let mut remarks = Vec::new();
     if tally.lost_bytes > 0 {
-        let Tally { lost, lost_bytes, frames, .. } = tally;
+        let ByteTally { lost, lost_bytes, frames, .. } = tally;
         remarks.push(format!("damaged within: {lost} frames ({lost_bytes} bytes) are left out, {frames} are read"));
     }
     if header.damaged > 0 {

@@ -7,7 +7,7 @@ use super::predictor::Past;
 const MOST_ITERATIONS: u32 = 5000;
 const MOST_TIME_US: i64 = 10_000_000;
 
-pub struct Sequence {
+pub struct FrameSequence {
     pub current: Vec<i64>,
     /// The last two frames, where `history` says that there are.
     previous: Vec<i64>,
@@ -25,7 +25,7 @@ pub struct Sequence {
     interval: Interval,
 }
 
-impl Sequence {
+impl FrameSequence {
     /// Fails where frames of the fields `names` have no iteration or time.
     pub fn new(names: &[String], header: &Header) -> Result<Self, String> {
         let place = |name: &str| {

@@ -1,7 +1,7 @@
 //! What became of the bytes of a flight.
 
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tally {
+pub struct ByteTally {
     /// Main frames that count.
     pub frames: usize,
     /// Main frames that do not, and bytes that belong to no frame, before the last one that counts.
@@ -21,7 +21,7 @@ pub struct Tally {
     pending: (usize, usize),
 }
 
-impl Tally {
+impl ByteTally {
     pub fn new(content: usize) -> Self {
         Self { content, ..Self::default() }
     }

@@ -2,7 +2,7 @@
 
 use super::{choose, header, table};
 use crate::base::check::BadInput;
-use crate::flight::format::{Content, File, Format};
+use crate::flight::format::{Content, Format, LogFile};
 use crate::flight::mapping::Mapping;
 use crate::flight::table::Tables;
 use std::collections::BTreeMap;
@@ -16,17 +16,17 @@ impl Format for Csv {
         "CSV (also .csv.gz)"
     }
 
-    fn recognises(&self, file: &File) -> bool {
+    fn recognises(&self, file: &LogFile) -> bool {
         let packed = file.bytes.starts_with(&[0x1f, 0x8b]);
         packed || file.ends(&[".csv", ".tsv", ".txt"]) || std::str::from_utf8(file.start()).is_ok()
     }
 
-    fn mapping(&self, file: &File) -> Result<(&'static str, Option<String>), BadInput> {
+    fn mapping(&self, file: &LogFile) -> Result<(&'static str, Option<String>), BadInput> {
         let called = choose::for_columns(&header(file.bytes, file.name)?, file.name)?;
         Ok((called, Some(format!("its columns fit the built-in mapping `{called}`"))))
     }
 
-    fn tables(&self, file: &File, mapping: &Mapping) -> Result<Content, BadInput> {
+    fn tables(&self, file: &LogFile, mapping: &Mapping) -> Result<Content, BadInput> {
         let columns = mapping.columns();
         let wanted =
             |table: &str| columns.iter().filter(|(source, _)| *source == table).map(|(_, column)| *column).collect();

@@ -41,7 +41,7 @@ impl<'a> Recorder<'a> {
     pub fn new(vehicle: &Vehicle, sensors: &'a SensorConfig, seed: u64) -> Self {
         let fine_steps = (sensors.imu.rate_hz * CONTROL_S).round() as usize;
         let rng = Philox::new(seed);
-        let mut sequences = [0, 1, 2].map(|stream| rng.sequence(rng::Stream::Sensors, stream, 0));
+        let mut sequences = [0, 1, 2].map(|stream| rng.sequence(rng::RngStream::Sensors, stream, 0));
         let bias = Bias {
             gyro: sensors.imu.gyro.draw_bias(&mut sequences[0]),
             specific_force: sensors.imu.specific_force.draw_bias(&mut sequences[0]),

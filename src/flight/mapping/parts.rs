@@ -10,7 +10,7 @@ use serde::Deserialize;
 /// Commands to the rate controller.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Setpoint {
+pub struct SetpointPart {
     #[serde(default)]
     pub source: String,
     pub time: Option<Time>,
@@ -21,12 +21,12 @@ pub struct Setpoint {
     /// Collective thrust, 0..1.
     pub thrust: Option<Scalar<One>>,
     /// To be tried where the file lacks the source or the columns above.
-    pub otherwise: Option<Box<Setpoint>>,
+    pub otherwise: Option<Box<SetpointPart>>,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Imu {
+pub struct ImuPart {
     #[serde(default)]
     pub source: String,
     pub time: Option<Time>,
@@ -39,12 +39,12 @@ pub struct Imu {
     /// axes into the sensor's.
     #[serde(default)]
     pub rotation_deg: [f64; 3],
-    pub otherwise: Option<Box<Imu>>,
+    pub otherwise: Option<Box<ImuPart>>,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Odometry {
+pub struct OdometryPart {
     #[serde(default)]
     pub source: String,
     pub time: Option<Time>,
@@ -59,12 +59,12 @@ pub struct Odometry {
     pub velocity: Option<Vector<Speed>>,
     #[serde(default)]
     pub velocity_frame: VelocityFrame,
-    pub otherwise: Option<Box<Odometry>>,
+    pub otherwise: Option<Box<OdometryPart>>,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Battery {
+pub struct BatteryPart {
     #[serde(default)]
     pub source: String,
     pub time: Option<Time>,
@@ -72,12 +72,12 @@ pub struct Battery {
     pub optional: bool,
     pub voltage: Option<Scalar<Voltage>>,
     pub current: Option<Scalar<Current>>,
-    pub otherwise: Option<Box<Battery>>,
+    pub otherwise: Option<Box<BatteryPart>>,
 }
 
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Rotors {
+pub struct RotorsPart {
     #[serde(default)]
     pub source: String,
     pub time: Option<Time>,
@@ -85,13 +85,13 @@ pub struct Rotors {
     pub optional: bool,
     /// One column a rotor, up to 8.
     pub speed: Option<Vector<AngularRate>>,
-    pub otherwise: Option<Box<Rotors>>,
+    pub otherwise: Option<Box<RotorsPart>>,
 }
 
 /// What the motors were sent.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Motors {
+pub struct MotorsPart {
     #[serde(default)]
     pub source: String,
     pub time: Option<Time>,
@@ -99,13 +99,13 @@ pub struct Motors {
     pub optional: bool,
     /// One column a motor, up to 8; 0..1.
     pub command: Option<Vector<One>>,
-    pub otherwise: Option<Box<Motors>>,
+    pub otherwise: Option<Box<MotorsPart>>,
 }
 
 /// What the flight controller says of the flight. Each flag is read from the first alternative that a file has.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct States {
+pub struct StatesPart {
     #[serde(default)]
     pub source: String,
     pub time: Option<Time>,
@@ -113,12 +113,12 @@ pub struct States {
     pub optional: bool,
     pub armed: Option<Flag>,
     pub in_air: Option<Flag>,
-    pub otherwise: Option<Box<States>>,
+    pub otherwise: Option<Box<StatesPart>>,
 }
 
 /// Where the rows of a stream come from.
 #[derive(Clone, Copy, Debug)]
-pub struct Origin<'a> {
+pub struct PartOrigin<'a> {
     /// Topic or table; "" is the one table of a CSV file, "_gps" that of a second file beside it, `NAME_gps.csv`.
     pub source: &'a str,
     pub time: Option<&'a Time>,
@@ -128,7 +128,7 @@ pub struct Origin<'a> {
 
 /// What the streams of a mapping have in common.
 pub trait Part {
-    fn origin(&self) -> Origin<'_>;
+    fn origin(&self) -> PartOrigin<'_>;
     fn otherwise(&self) -> Option<&Self>;
     /// (Source, field) of all quantities.
     fn columns(&self) -> Vec<(&str, &str)>;
@@ -139,8 +139,8 @@ pub trait Part {
 macro_rules! part {
     ($part:ty: $($quantity:ident[$count:expr]),+ $(; $check:expr)?) => {
         impl Part for $part {
-            fn origin(&self) -> Origin<'_> {
-                Origin { source: &self.source, time: self.time.as_ref(), optional: self.optional }
+            fn origin(&self) -> PartOrigin<'_> {
+                PartOrigin { source: &self.source, time: self.time.as_ref(), optional: self.optional }
             }
 
             fn otherwise(&self) -> Option<&Self> {
@@ -173,13 +173,13 @@ macro_rules! part {
     };
 }
 
-part!(Setpoint: rate[3..=3], thrust[1..=1]);
-part!(Imu: gyro[3..=3], specific_force[3..=3]; |imu| {
+part!(SetpointPart: rate[3..=3], thrust[1..=1]);
+part!(ImuPart: gyro[3..=3], specific_force[3..=3]; |imu| {
     let ok = imu.rotation_deg.iter().all(|angle| angle.is_finite());
     Invalid::unless(ok, "rotation_deg", format!("{:?}", imu.rotation_deg), "three finite angles", "")
 });
-part!(Odometry: position[3..=3], attitude[4..=4], velocity[3..=3]);
-part!(Battery: voltage[1..=1], current[1..=1]);
-part!(Rotors: speed[1..=MOTORS]);
-part!(Motors: command[1..=MOTORS]);
-part!(States: armed[1..=1], in_air[1..=1]);
+part!(OdometryPart: position[3..=3], attitude[4..=4], velocity[3..=3]);
+part!(BatteryPart: voltage[1..=1], current[1..=1]);
+part!(RotorsPart: speed[1..=MOTORS]);
+part!(MotorsPart: command[1..=MOTORS]);
+part!(StatesPart: armed[1..=1], in_air[1..=1]);

@@ -2,7 +2,7 @@
 
 use super::quantity::{Flag, Scalar, Time, Vector, column, optional};
 use super::units::Unit;
-use super::{Mapping, Part, States, join};
+use super::{Mapping, Part, StatesPart, join};
 use crate::base::check::BadInput;
 use crate::base::document::nearest;
 use crate::flight::table::{LOG_TIME, Table, Tables};
@@ -47,7 +47,7 @@ pub type Told = Vec<(f64, f64)>;
 
 impl<'a> Sources<'a> {
     /// What a flag of the part `key` says, row by row, in the order of the file.
-    pub fn flag(&self, key: &str, part: &'a States, flag: &'a Flag) -> Result<Told, Missing> {
+    pub fn flag(&self, key: &str, part: &'a StatesPart, flag: &'a Flag) -> Result<Told, Missing> {
         let source = flag.source.as_deref().unwrap_or(&part.source);
         let table = self.table(key, source)?;
         if optional(&flag.field) && !table.columns.contains_key(column(&flag.field)) {

@@ -2,7 +2,7 @@
 
 use super::quantity::Flag;
 use super::source::{Missing, Sources, Told};
-use super::{Part, States};
+use super::{Part, StatesPart};
 use crate::base::check::BadInput;
 use crate::flight::Stream;
 
@@ -28,7 +28,7 @@ impl Sources<'_> {
     }
 
     /// What the first alternative says that the file has.
-    fn alternatives(&self, key: &str, flag: fn(&States) -> Option<&Flag>) -> Result<Told, BadInput> {
+    fn alternatives(&self, key: &str, flag: fn(&StatesPart) -> Option<&Flag>) -> Result<Told, BadInput> {
         let mut next = self.mapping.states.as_ref();
         let optional = next.is_some_and(|part| part.optional);
         let mut missing = None;

@@ -1,10 +1,10 @@
 //! The rows of each stream in SI, front-left-up and east-north-up.
 
 use super::source::{Open, Rows};
-use super::{Battery, Imu, Motors, Odometry, Rotors, Setpoint, VelocityFrame, frames};
+use super::{BatteryPart, ImuPart, MotorsPart, OdometryPart, RotorsPart, SetpointPart, VelocityFrame, frames};
 use crate::flight::MOTORS;
 
-pub fn setpoint(part: &Setpoint, open: &Open) -> Rows<4> {
+pub fn setpoint(part: &SetpointPart, open: &Open) -> Rows<4> {
     let body = part.body.unwrap_or(open.sources.mapping.body);
     let rates = open.vector::<_, 3>("rate", &part.rate, false)?;
     let thrust = open.scalar("thrust", &part.thrust)?;
@@ -15,7 +15,7 @@ pub fn setpoint(part: &Setpoint, open: &Open) -> Rows<4> {
     Ok(rates.into_iter().zip(thrust).map(row).collect())
 }
 
-pub fn imu(part: &Imu, open: &Open) -> Rows<6> {
+pub fn imu(part: &ImuPart, open: &Open) -> Rows<6> {
     let body = part.body.unwrap_or(open.sources.mapping.body);
     let turned = |vector| frames::mounted(part.rotation_deg, body.to_flu(vector));
     let gyro = open.vector("gyro", &part.gyro, false)?;
@@ -27,7 +27,7 @@ pub fn imu(part: &Imu, open: &Open) -> Rows<6> {
     Ok(gyro.into_iter().zip(force).map(row).collect())
 }
 
-pub fn odometry(part: &Odometry, open: &Open) -> Rows<10> {
+pub fn odometry(part: &OdometryPart, open: &Open) -> Rows<10> {
     let body = part.body.unwrap_or(open.sources.mapping.body);
     let world = part.world.unwrap_or(open.sources.mapping.world);
     let positions = open.vector("position", &part.position, false)?;
@@ -45,7 +45,7 @@ pub fn odometry(part: &Odometry, open: &Open) -> Rows<10> {
     Ok(positions.into_iter().zip(attitudes).zip(velocities).map(row).collect())
 }
 
-pub fn battery(part: &Battery, open: &Open) -> Rows<2> {
+pub fn battery(part: &BatteryPart, open: &Open) -> Rows<2> {
     let voltage = measured(open.scalar("voltage", &part.voltage)?);
     let current = measured(open.scalar("current", &part.current)?);
     Ok(voltage.into_iter().zip(current).map(|(voltage, current)| [voltage, current]).collect())
@@ -56,10 +56,10 @@ fn measured(values: Vec<f64>) -> Vec<f64> {
     if values.iter().all(|&value| value == 0.0) { vec![f64::NAN; values.len()] } else { values }
 }
 
-pub fn rotors(part: &Rotors, open: &Open) -> Rows<MOTORS> {
+pub fn rotors(part: &RotorsPart, open: &Open) -> Rows<MOTORS> {
     open.vector("speed", &part.speed, false)
 }
 
-pub fn motors(part: &Motors, open: &Open) -> Rows<MOTORS> {
+pub fn motors(part: &MotorsPart, open: &Open) -> Rows<MOTORS> {
     open.vector("command", &part.command, false)
 }

@@ -16,29 +16,29 @@ const PATH: usize = 1024;
 const NODES: usize = 1 << 16;
 
 /// Decodes the messages of one channel.
-pub struct Decoder {
+pub struct CdrDecoder {
     structs: Vec<Fields>,
     root: Type,
-    plan: Option<Node>,
+    plan: Option<CdrNode>,
     nodes: usize,
 }
 
 /// A type with the columns that its numbers go to.
-enum Node {
+enum CdrNode {
     Number(Number, usize),
     Time(usize),
     Text,
-    Struct(Vec<Node>),
+    Struct(Vec<CdrNode>),
     /// `items` grow with the longest list met.
     List {
         of: Type,
         count: Option<usize>,
         path: String,
-        items: Vec<Node>,
+        items: Vec<CdrNode>,
     },
 }
 
-impl Decoder {
+impl CdrDecoder {
     pub fn new(schema: CdrSchema) -> Self {
         Self { structs: schema.structs, root: schema.root, plan: None, nodes: 0 }
     }
@@ -69,7 +69,7 @@ struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    fn plan(&mut self, of: &Type, path: String) -> Result<Node, String> {
+    fn plan(&mut self, of: &Type, path: String) -> Result<CdrNode, String> {
         if path.len() > PATH {
             return Err(format!("a field's path is longer than {PATH} bytes"));
         }
@@ -79,32 +79,32 @@ impl Planner<'_> {
         }
         self.columns.spend(128 + path.len())?;
         Ok(match of {
-            Type::Number(number) => Node::Number(*number, self.columns.column(&path)?),
-            Type::Time => Node::Time(self.columns.column(&path)?),
-            Type::Text => Node::Text,
+            Type::Number(number) => CdrNode::Number(*number, self.columns.column(&path)?),
+            Type::Time => CdrNode::Time(self.columns.column(&path)?),
+            Type::Text => CdrNode::Text,
             Type::Struct(at) => {
                 let fields = self.structs[*at].iter().map(|(name, of)| {
                     let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
                     self.plan(of, path)
                 });
-                Node::Struct(fields.collect::<Result<_, _>>()?)
+                CdrNode::Struct(fields.collect::<Result<_, _>>()?)
             }
-            Type::List { of, count } => Node::List { of: (**of).clone(), count: *count, path, items: Vec::new() },
+            Type::List { of, count } => CdrNode::List { of: (**of).clone(), count: *count, path, items: Vec::new() },
             Type::Named(name) => unreachable!("{name} was linked"),
         })
     }
 
-    fn read(&mut self, node: &mut Node, input: &mut Input) -> Result<(), String> {
+    fn read(&mut self, node: &mut CdrNode, input: &mut Input) -> Result<(), String> {
         match node {
-            Node::Number(number, column) => self.columns.set(*column, input.number(*number).ok_or(SHORT)?),
-            Node::Time(column) => self.columns.set(*column, input.time().ok_or(SHORT)?),
-            Node::Text => input.text().ok_or(SHORT)?,
-            Node::Struct(fields) => {
+            CdrNode::Number(number, column) => self.columns.set(*column, input.number(*number).ok_or(SHORT)?),
+            CdrNode::Time(column) => self.columns.set(*column, input.time().ok_or(SHORT)?),
+            CdrNode::Text => input.text().ok_or(SHORT)?,
+            CdrNode::Struct(fields) => {
                 for field in fields {
                     self.read(field, input)?;
                 }
             }
-            Node::List { of, count, path, items } => {
+            CdrNode::List { of, count, path, items } => {
                 let n = count.or_else(|| input.length()).ok_or(SHORT)?;
                 if n > LIST {
                     return skip_list(self.structs, of, n, input).ok_or(SHORT.into());

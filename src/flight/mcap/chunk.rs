@@ -9,7 +9,7 @@ const UNCOMPRESSED: u64 = 1 << 30;
 
 /// The records of the chunk with this body. One that the end of the file has `cut` short gives what of them can be had.
 pub fn records(body: &[u8], cut: bool) -> Result<Cow<'_, [u8]>, String> {
-    let (header, rest) = Header::parse(body).ok_or("a chunk has no header")?;
+    let (header, rest) = ChunkHeader::parse(body).ok_or("a chunk has no header")?;
     match rest.get(..usize::try_from(header.compressed_size).unwrap_or(usize::MAX)) {
         Some(compressed) => {
             let records = header.decompress(compressed, header.uncompressed_size)?;
@@ -22,14 +22,14 @@ pub fn records(body: &[u8], cut: bool) -> Result<Cow<'_, [u8]>, String> {
     }
 }
 
-struct Header<'a> {
+struct ChunkHeader<'a> {
     uncompressed_size: u64,
     uncompressed_crc: u32,
     compression: &'a str,
     compressed_size: u64,
 }
 
-impl<'a> Header<'a> {
+impl<'a> ChunkHeader<'a> {
     fn parse(body: &'a [u8]) -> Option<(Self, &'a [u8])> {
         let b = &mut Bytes(body);
         let (_start_time, _end_time) = (b.u64()?, b.u64()?);

@@ -16,7 +16,7 @@ pub struct Schema {
 }
 
 pub enum Decoder {
-    Cdr(cdr::Decoder),
+    Cdr(cdr::CdrDecoder),
     Json,
     Protobuf(protobuf::Descriptors),
 }
@@ -34,8 +34,8 @@ impl Decoder {
         columns.spend(64 * schema.data.len())?;
         let text = || str::from_utf8(&schema.data).map_err(|_| "its schema is not text");
         match (encoding, schema.encoding.as_str()) {
-            ("cdr", "ros2msg") => Ok(Self::Cdr(cdr::Decoder::new(msg::schema(&schema.name, text()?)?))),
-            ("cdr", "ros2idl") => Ok(Self::Cdr(cdr::Decoder::new(idl::schema(&schema.name, text()?)?))),
+            ("cdr", "ros2msg") => Ok(Self::Cdr(cdr::CdrDecoder::new(msg::schema(&schema.name, text()?)?))),
+            ("cdr", "ros2idl") => Ok(Self::Cdr(cdr::CdrDecoder::new(idl::schema(&schema.name, text()?)?))),
             ("protobuf", "protobuf") => Ok(Self::Protobuf(protobuf::Descriptors::new(&schema.name, &schema.data)?)),
             _ => Err("this encoding is not known".into()),
         }

@@ -2,7 +2,7 @@
 
 use super::bytes::Bytes;
 use super::chunk;
-use super::record::{self, Record};
+use super::record::{self, McapRecord};
 use crate::base::check::BadInput;
 use crate::flight::Readable;
 use ::mcap::{MAGIC, records::op};
@@ -27,7 +27,7 @@ impl From<&str> for Stop {
     }
 }
 
-type Visit<'v> = &'v mut dyn FnMut(Record) -> Result<(), Stop>;
+type Visit<'v> = &'v mut dyn FnMut(McapRecord) -> Result<(), Stop>;
 
 /// Shows `visit` the records of the data section, in the order of the file.
 pub fn walk(bytes: &[u8], visit: Visit) -> Result<Readable, BadInput> {
@@ -102,8 +102,8 @@ fn whole(rest: &mut Bytes, visit: Visit) -> Result<(), Stop> {
     Ok(())
 }
 
-fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, Stop> {
-    Record::parse(opcode, body).ok_or(Stop::Broken(format!("a record with opcode {opcode} is damaged")))
+fn parse(opcode: u8, body: &[u8]) -> Result<McapRecord<'_>, Stop> {
+    McapRecord::parse(opcode, body).ok_or(Stop::Broken(format!("a record with opcode {opcode} is damaged")))
 }
 
 fn summary(rest: &mut Bytes) -> Result<(), Stop> {

@@ -4,7 +4,7 @@ use super::Topic;
 use super::column::{Budget, Columns};
 use super::decoder::{Decoder, Schema};
 use super::file::Stop;
-use super::record::{self, MessageRecord, Record};
+use super::record::{self, McapRecord, MessageRecord};
 use super::vehicle;
 use crate::base::check::BadInput;
 use crate::flight::table::Tables;
@@ -18,12 +18,12 @@ pub struct TopicReader<'w> {
     wanted: &'w dyn Fn(&str) -> bool,
     budget: Budget,
     schemas: HashMap<u16, Schema>,
-    channels: HashMap<u16, Channel>,
+    channels: HashMap<u16, OpenChannel>,
     columns: BTreeMap<String, Columns>,
     vehicle: VehicleRecord,
 }
 
-struct Channel {
+struct OpenChannel {
     schema: u16,
     encoding: String,
     topic: Topic,
@@ -43,16 +43,16 @@ impl<'w> TopicReader<'w> {
         }
     }
 
-    pub fn record(&mut self, record: Record) -> Result<(), Stop> {
+    pub fn record(&mut self, record: McapRecord) -> Result<(), Stop> {
         match record {
-            Record::Message(message) => self.message(&message),
-            Record::Schema(schema) => self.schema(&schema),
-            Record::Channel(channel) => self.channel(&channel),
-            Record::Metadata { name: vehicle::NAME, values } => {
+            McapRecord::Message(message) => self.message(&message),
+            McapRecord::Schema(schema) => self.schema(&schema),
+            McapRecord::Channel(channel) => self.channel(&channel),
+            McapRecord::Metadata { name: vehicle::NAME, values } => {
                 self.vehicle = vehicle::read(values).map_err(Stop::Useless)?;
                 Ok(())
             }
-            Record::Metadata { .. } | Record::Other => Ok(()),
+            McapRecord::Metadata { .. } | McapRecord::Other => Ok(()),
         }
     }
 
@@ -85,7 +85,7 @@ impl<'w> TopicReader<'w> {
             self.columns.entry(topic.into()).or_insert_with(|| Columns::new(self.budget.clone()));
         }
         let topic = Topic { name, message, encoding: full, count: 0 };
-        self.channels.insert(id, Channel { schema, encoding: encoding.into(), topic, wanted, decoder: None });
+        self.channels.insert(id, OpenChannel { schema, encoding: encoding.into(), topic, wanted, decoder: None });
         Ok(())
     }
 
@@ -112,7 +112,7 @@ impl<'w> TopicReader<'w> {
     }
 }
 
-impl Channel {
+impl OpenChannel {
     fn read(&mut self, schema: Option<&Schema>, message: &MessageRecord, columns: &mut Columns) -> Result<(), String> {
         let decoder = match &mut self.decoder {
             Some(decoder) => decoder,

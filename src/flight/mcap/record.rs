@@ -7,7 +7,7 @@ use super::bytes::Bytes;
 use ::mcap::records::op;
 
 /// One record, borrowed from the file or from a decompressed chunk.
-pub enum Record<'a> {
+pub enum McapRecord<'a> {
     Schema(SchemaRecord<'a>),
     Channel(ChannelRecord<'a>),
     Message(MessageRecord<'a>),
@@ -40,7 +40,7 @@ pub struct MessageRecord<'a> {
     pub data: &'a [u8],
 }
 
-impl<'a> Record<'a> {
+impl<'a> McapRecord<'a> {
     /// The record with this opcode and body; none where the body does not hold what the opcode asks for.
     pub fn parse(opcode: u8, body: &'a [u8]) -> Option<Self> {
         let b = &mut Bytes(body);

@@ -1,6 +1,6 @@
 //! The box that the pilot flies in, and whether it is about to leave it.
 
-use super::Limits;
+use super::PilotLimits;
 use super::view::View;
 use crate::model::constants::GRAVITY_M_S2;
 
@@ -21,7 +21,7 @@ const CLOSING_S: f64 = 0.09;
 const IDLE_SINK: f64 = 0.7 * GRAVITY_M_S2;
 
 /// Whether the vehicle would leave the box unless it is stopped now.
-pub fn leaves(view: &View, limits: &Limits) -> bool {
+pub fn leaves(view: &View, limits: &PilotLimits) -> bool {
     let (p, v) = (view.position, view.velocity);
     let aside = [0, 1].into_iter().any(|i| {
         let stop = p[i] + v[i] * REACTION_S + v[i] * v[i].abs() / (2.0 * BRAKING);
@@ -32,7 +32,7 @@ pub fn leaves(view: &View, limits: &Limits) -> bool {
 }
 
 /// Height at which a fall would end with the thrust that there is.
-fn lowest(view: &View, limits: &Limits) -> f64 {
+fn lowest(view: &View, limits: &PilotLimits) -> f64 {
     let turning = view.tilt() / limits.max_rate_rad_s[0].min(limits.max_rate_rad_s[1]).min(6.0);
     let time = 0.1 + turning;
     let fall = (GRAVITY_M_S2 * time - view.velocity.z).max(0.0);
@@ -42,7 +42,7 @@ fn lowest(view: &View, limits: &Limits) -> f64 {
 }
 
 /// Height at which a climb would end if the throttle were closed now, but for drag.
-fn highest(view: &View, limits: &Limits) -> f64 {
+fn highest(view: &View, limits: &PilotLimits) -> f64 {
     let spare = 2.0 / (1.0 + limits.hover_command) - 1.0;
     let climb = (view.velocity.z + GRAVITY_M_S2 * spare * CLOSING_S).max(0.0);
     view.position.z + climb * climb / (2.0 * IDLE_SINK)

@@ -1,6 +1,6 @@
 //! From a wanted velocity over attitude to commands, with a rough idea of the thrust.
 
-use super::Limits;
+use super::PilotLimits;
 use super::view::{View, wrapped};
 use crate::model::constants::GRAVITY_M_S2;
 use nalgebra::Vector3;
@@ -50,7 +50,7 @@ pub struct Cascade {
 }
 
 impl Cascade {
-    pub fn new(limits: &Limits) -> Self {
+    pub fn new(limits: &PilotLimits) -> Self {
         let hover = limits.hover_command.clamp(-0.9, 0.6);
         Self { max_rate: limits.max_rate_rad_s, hover, standing: Vector3::zeros() }
     }

@@ -1,9 +1,11 @@
 //! Where a manoeuvre begins, and what is flown there.
 
-use super::Limits;
+use super::PilotLimits;
 use super::cascade::Demand;
 use super::manoeuvre::Manoeuvre;
-use super::script::{Course, Flip, LowHover, Now, PunchTurns, RateSteps, Script, Segment, Sequenced, ThrottleSteps};
+use super::script::{
+    Flip, LowHover, Now, PunchTurns, RateSteps, Script, Segment, Sequenced, ThrottleSteps, VelocityLeg,
+};
 use super::view::{View, wrapped};
 use crate::base::rng::Sequence;
 use nalgebra::{Vector2, Vector3};
@@ -33,9 +35,9 @@ const FASTEST: f64 = 20.0;
 impl Plan {
     /// The manoeuvre of this kind after `flown` others of it. The first is flown at full size, and directions
     /// alternate.
-    pub fn new(kind: Manoeuvre, flown: usize, view: &View, limits: &Limits, rng: &mut Sequence) -> Self {
+    pub fn new(kind: Manoeuvre, flown: usize, view: &View, limits: &PilotLimits, rng: &mut Sequence) -> Self {
         let sign = if flown.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let size = Size { sign, share: if flown == 0 { 1.0 } else { rng.random() } };
+        let size = ManoeuvreSize { sign, share: if flown == 0 { 1.0 } else { rng.random() } };
         match kind {
             Manoeuvre::RollSteps | Manoeuvre::PitchSteps | Manoeuvre::YawSteps | Manoeuvre::RateSteps => {
                 turning(kind, size, view, limits, rng)
@@ -78,13 +80,13 @@ impl Plan {
 
 /// How large a manoeuvre is, and to which side.
 #[derive(Clone, Copy)]
-struct Size {
+struct ManoeuvreSize {
     sign: f64,
     /// 0 to 1, between the least that is worth it and the whole.
     share: f64,
 }
 
-impl Size {
+impl ManoeuvreSize {
     /// Between `low` and 1.
     fn least(self, low: f64) -> f64 {
         low + (1.0 - low) * self.share
@@ -96,7 +98,7 @@ impl Size {
 }
 
 /// Steps, doublets, flips and spins of body rates, over the spot.
-fn turning(kind: Manoeuvre, size: Size, view: &View, limits: &Limits, rng: &mut Sequence) -> Plan {
+fn turning(kind: Manoeuvre, size: ManoeuvreSize, view: &View, limits: &PilotLimits, rng: &mut Sequence) -> Plan {
     match kind {
         Manoeuvre::RollSteps | Manoeuvre::PitchSteps | Manoeuvre::YawSteps | Manoeuvre::RateSteps => {
             let axis = kind as usize;
@@ -123,7 +125,7 @@ fn turning(kind: Manoeuvre, size: Size, view: &View, limits: &Limits, rng: &mut 
 }
 
 /// What throttle does, over the spot.
-fn pushing(kind: Manoeuvre, size: Size, view: &View, rng: &mut Sequence) -> Plan {
+fn pushing(kind: Manoeuvre, size: ManoeuvreSize, view: &View, rng: &mut Sequence) -> Plan {
     match kind {
         Manoeuvre::ThrottleSteps => over_spot(view, rng.uniform([35.0, 50.0]), Box::new(ThrottleSteps::new())),
         Manoeuvre::Punch => {
@@ -151,7 +153,7 @@ fn pushing(kind: Manoeuvre, size: Size, view: &View, rng: &mut Sequence) -> Plan
 }
 
 /// Passes, climbs, descents and circles.
-fn travelling(kind: Manoeuvre, size: Size, view: &View, rng: &mut Sequence) -> Plan {
+fn travelling(kind: Manoeuvre, size: ManoeuvreSize, view: &View, rng: &mut Sequence) -> Plan {
     match kind {
         Manoeuvre::Forward | Manoeuvre::Backward | Manoeuvre::Left | Manoeuvre::Right => {
             let nose = match kind {
@@ -162,7 +164,7 @@ fn travelling(kind: Manoeuvre, size: Size, view: &View, rng: &mut Sequence) -> P
             };
             let speed = FASTEST * size.least(0.7);
             let height = rng.uniform([22.0, 58.0]);
-            across(view, height, nose, rng, Course::new(speed, 0.0, 0.0, 3.2))
+            across(view, height, nose, rng, VelocityLeg::new(speed, 0.0, 0.0, 3.2))
         }
         Manoeuvre::Climb | Manoeuvre::Descent => {
             let (height, vertical) = match kind {
@@ -170,17 +172,17 @@ fn travelling(kind: Manoeuvre, size: Size, view: &View, rng: &mut Sequence) -> P
                 _ => (70.0, -14.0 * size.least(0.3)),
             };
             let aside = rng.uniform([0.0, 6.0]);
-            across(view, height, 0.0, rng, Course::new(aside, vertical, 0.0, 3.8))
+            across(view, height, 0.0, rng, VelocityLeg::new(aside, vertical, 0.0, 3.8))
         }
         Manoeuvre::Dive => {
             let (speed, vertical) = (FASTEST * size.least(0.5), -rng.uniform([5.0, 12.0]));
-            across(view, 66.0, 0.0, rng, Course::new(speed, vertical, 0.0, 3.2))
+            across(view, 66.0, 0.0, rng, VelocityLeg::new(speed, vertical, 0.0, 3.2))
         }
         // A circle.
         _ => {
             let (speed, radius) = (rng.uniform([10.0, 16.0]), rng.uniform([18.0, 28.0]));
             let turn = size.sign * speed / radius;
-            across(view, rng.uniform([25.0, 55.0]), 0.0, rng, Course::new(speed, 0.0, turn, 4.0))
+            across(view, rng.uniform([25.0, 55.0]), 0.0, rng, VelocityLeg::new(speed, 0.0, turn, 4.0))
         }
     }
 }
@@ -196,7 +198,7 @@ fn throttle(segments: &[(f64, f64, f64)]) -> Box<dyn Script> {
 }
 
 /// Away over the origin, with the direction of travel `nose` radians to the left of the nose.
-fn across(view: &View, height: f64, nose: f64, rng: &mut Sequence, course: Course) -> Plan {
+fn across(view: &View, height: f64, nose: f64, rng: &mut Sequence, course: VelocityLeg) -> Plan {
     let here = view.position.xy();
     let away = if here.norm() > 5.0 { here.normalize() } else { Vector2::from(UnitCircle.sample(rng)) };
     let spot = away * here.norm().clamp(20.0, 60.0);

@@ -6,11 +6,11 @@ mod rates;
 mod sequenced;
 mod throttle;
 
-use super::Limits;
+use super::PilotLimits;
 use super::cascade::Demand;
 use super::view::View;
 use crate::base::rng::Sequence;
-pub use course::Course;
+pub use course::VelocityLeg;
 pub use low::LowHover;
 pub use rates::{Flip, RateSteps};
 pub use sequenced::{Segment, Sequenced};
@@ -24,7 +24,7 @@ pub struct Now<'a> {
     /// Since the last command, s.
     pub dt: f64,
     pub view: &'a View,
-    pub limits: &'a Limits,
+    pub limits: &'a PilotLimits,
 }
 
 /// A manoeuvre.

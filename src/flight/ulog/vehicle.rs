@@ -7,7 +7,7 @@ use crate::flight::{MOTORS, VehicleKind, VehicleRecord};
 use std::collections::HashMap;
 
 /// Parameters by name.
-pub type Parameters = HashMap<String, f64>;
+pub type Px4Parameters = HashMap<String, f64>;
 
 /// Topics that the tables and the record are made of.
 pub const SOURCES: [&str; 4] = ["actuator_motors", "actuator_outputs", "esc_status", "vehicle_status"];
@@ -16,7 +16,7 @@ pub const SOURCES: [&str; 4] = ["actuator_motors", "actuator_outputs", "esc_stat
 const MOST_NAME_BYTES: usize = 64;
 
 /// Takes in a parameter: the length of its type and name, these, four bytes. Of one that is set twice the first counts.
-pub fn parameter(parameters: &mut Parameters, payload: &[u8]) {
+pub fn parameter(parameters: &mut Px4Parameters, payload: &[u8]) {
     let Some((&length, rest)) = payload.split_first() else { return };
     let Some((name, value)) = rest.split_at_checked(length.into()) else { return };
     let (Ok(name), Ok(value)) = (std::str::from_utf8(name), <[u8; 4]>::try_from(value)) else { return };
@@ -31,7 +31,7 @@ pub fn parameter(parameters: &mut Parameters, payload: &[u8]) {
 }
 
 /// Adds what is known of the vehicle; a remark where something that was logged is left out.
-pub fn complete(tables: &mut Tables, parameters: &Parameters) -> Option<String> {
+pub fn complete(tables: &mut Tables, parameters: &Px4Parameters) -> Option<String> {
     tables.vehicle = record(tables, parameters);
     let count = tables.vehicle.rotors.map_or(MOTORS, usize::from);
     let rotors = rotors(tables, count);
@@ -49,7 +49,7 @@ fn last(tables: &Tables, topic: &str, column: &str) -> Option<f64> {
     tables.tables.get(topic)?.columns.get(column)?.last().copied()
 }
 
-fn record(tables: &Tables, parameters: &Parameters) -> VehicleRecord {
+fn record(tables: &Tables, parameters: &Px4Parameters) -> VehicleRecord {
     let status = |column: &str| last(tables, "vehicle_status", column);
     let of_type = parameters.get("MAV_TYPE").copied().or_else(|| status("system_type")).map(|number| number as i64);
     let kind = match of_type {
@@ -103,7 +103,7 @@ fn rotors(tables: &Tables, count: usize) -> Option<Table> {
 }
 
 /// What the motors were sent: since PX4 1.13 as such, before as the lengths of pulses.
-fn motors(tables: &Tables, count: usize, parameters: &Parameters) -> Result<Option<Table>, String> {
+fn motors(tables: &Tables, count: usize, parameters: &Px4Parameters) -> Result<Option<Table>, String> {
     let logged = |topic: &str| tables.tables.get(topic).filter(|table| table.rows() > 0);
     let of = |k: usize, x: f64| if k < count { x } else { f64::NAN };
     if let Some(table) = logged("actuator_motors") {
@@ -135,7 +135,7 @@ mod tests {
         tables
     }
 
-    fn parameters(values: &[(&str, f64)]) -> Parameters {
+    fn parameters(values: &[(&str, f64)]) -> Px4Parameters {
         values.iter().map(|(name, value)| (name.to_string(), *value)).collect()
     }
 
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn parameters_and_damaged_ones() {
-        let mut read = Parameters::new();
+        let mut read = Px4Parameters::new();
         parameter(&mut read, &[&[15u8][..], b"float PWM_SCALE", &1.5f32.to_le_bytes()].concat());
         parameter(&mut read, &[&[16u8][..], b"int32_t MAV_TYPE", &2i32.to_le_bytes()].concat());
         parameter(&mut read, &[&[16u8][..], b"int32_t MAV_TYPE", &7i32.to_le_bytes()].concat());

@@ -1,7 +1,7 @@
 //! The canonical topics and the definitions of their messages.
 
 /// A topic, its message, and the definitions of all types that the message uses.
-pub struct Topic {
+pub struct CanonicalTopic {
     pub name: &'static str,
     pub message: &'static str,
     definition: &'static str,
@@ -19,21 +19,21 @@ const HEADER: (&str, &str) = definition!("std_msgs", "Header");
 const VECTOR3: (&str, &str) = definition!("geometry_msgs", "Vector3");
 const QUATERNION: (&str, &str) = definition!("geometry_msgs", "Quaternion");
 
-pub const SETPOINT: Topic = Topic {
+pub const SETPOINT: CanonicalTopic = CanonicalTopic {
     name: "/setpoint",
     message: "mavros_msgs/msg/AttitudeTarget",
     definition: include_str!("../ros/AttitudeTarget.msg"),
     uses: &[HEADER, TIME, QUATERNION, VECTOR3],
 };
 
-pub const IMU: Topic = Topic {
+pub const IMU: CanonicalTopic = CanonicalTopic {
     name: "/imu",
     message: "sensor_msgs/msg/Imu",
     definition: include_str!("../ros/Imu.msg"),
     uses: &[HEADER, TIME, QUATERNION, VECTOR3],
 };
 
-pub const ODOMETRY: Topic = Topic {
+pub const ODOMETRY: CanonicalTopic = CanonicalTopic {
     name: "/odom",
     message: "nav_msgs/msg/Odometry",
     definition: include_str!("../ros/Odometry.msg"),
@@ -50,42 +50,42 @@ pub const ODOMETRY: Topic = Topic {
     ],
 };
 
-pub const BATTERY: Topic = Topic {
+pub const BATTERY: CanonicalTopic = CanonicalTopic {
     name: "/battery",
     message: "sensor_msgs/msg/BatteryState",
     definition: include_str!("../ros/BatteryState.msg"),
     uses: &[HEADER, TIME],
 };
 
-pub const ROTORS: Topic = Topic {
+pub const ROTORS: CanonicalTopic = CanonicalTopic {
     name: "/rotors",
     message: "sensor_msgs/msg/JointState",
     definition: include_str!("../ros/JointState.msg"),
     uses: &[HEADER, TIME],
 };
 
-pub const MOTORS: Topic = Topic {
+pub const MOTORS: CanonicalTopic = CanonicalTopic {
     name: "/motors",
     message: "actuator_msgs/msg/Actuators",
     definition: include_str!("../ros/Actuators.msg"),
     uses: &[HEADER, TIME],
 };
 
-pub const STATE: Topic = Topic {
+pub const STATE: CanonicalTopic = CanonicalTopic {
     name: "/state",
     message: "mavros_msgs/msg/State",
     definition: include_str!("../ros/State.msg"),
     uses: &[HEADER, TIME],
 };
 
-pub const EXTENDED_STATE: Topic = Topic {
+pub const EXTENDED_STATE: CanonicalTopic = CanonicalTopic {
     name: "/extended_state",
     message: "mavros_msgs/msg/ExtendedState",
     definition: include_str!("../ros/ExtendedState.msg"),
     uses: &[HEADER, TIME],
 };
 
-impl Topic {
+impl CanonicalTopic {
     /// The `ros2msg` schema.
     pub fn schema(&self) -> String {
         let separator = "=".repeat(80);

@@ -78,11 +78,11 @@ fn swing(residual: &[f64], rows: &[ResidualRow], blocks: usize) -> Option<(f64, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Philox, Stream};
+    use crate::base::rng::{Philox, RngStream};
 
     /// A residual that remembers: white noise through a filter of second order, with more white noise on top.
     fn remembered(first: f64, second: f64, share: f64) -> (Vec<f64>, Vec<ResidualRow>) {
-        let mut noise = Philox::new(7).sequence(Stream::Pilot, 0, 0);
+        let mut noise = Philox::new(7).sequence(RngStream::Pilot, 0, 0);
         let (mut before, mut now) = (0.0, 0.0);
         let mut white = move || noise.uniform([-1.0, 1.0]);
         let one = |_| {

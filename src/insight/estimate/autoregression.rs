@@ -46,13 +46,13 @@ pub fn autoregression(x: &[f64], follows: impl Fn(usize) -> bool, order: usize) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Philox, Stream};
+    use crate::base::rng::{Philox, RngStream};
     use rand::RngExt;
     use rand_distr::StandardNormal;
 
     #[test]
     fn memory_is_found_and_gaps_are_none() {
-        let mut rng = Philox::new(3).sequence(Stream::Noise, 0, 0);
+        let mut rng = Philox::new(3).sequence(RngStream::Noise, 0, 0);
         let mut x = vec![0.0; 20_000];
         for i in 1..x.len() {
             x[i] = 0.8 * x[i - 1] + 0.6 * rng.sample::<f64, _>(StandardNormal);

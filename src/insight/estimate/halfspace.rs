@@ -90,7 +90,7 @@ pub fn minimum(matrix: &DMatrix<f64>, ridge: &[f64], downhill: &[f64], within: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Philox, Stream};
+    use crate::base::rng::{Philox, RngStream};
     use rand::RngExt;
 
     /// (x - 3)^2 + (y - 3)^2 with x + y at most 4, and x at least 2.5 besides.
@@ -110,7 +110,7 @@ mod tests {
     /// Random problems: what is found lies inside, and no feasible point beside it is lower.
     #[test]
     fn nothing_inside_is_lower() {
-        let mut rng = Philox::new(5).sequence(Stream::Noise, 0, 0);
+        let mut rng = Philox::new(5).sequence(RngStream::Noise, 0, 0);
         let mut draw = |n: usize| (0..n).map(|_| rng.random_range(-1.0..1.0)).collect::<Vec<f64>>();
         for _ in 0..300 {
             let n = 4;

@@ -1,7 +1,7 @@
 //! An identification as JSON.
 
 use super::AXES;
-use super::estimate::Estimate;
+use super::estimate::Estimated;
 use super::result::{BatteryEstimate, DragEstimate, Identification, Response, ThrustEstimate};
 use crate::insight::quality::{LogFinding, StreamSummary};
 use crate::model::vehicle::Vehicle;
@@ -17,15 +17,15 @@ pub struct IdentificationDocument<'a> {
     usable_s: f64,
     /// By axis and for the thrust; `rmse` and `mae` in `unit`, on the validation part.
     response: BTreeMap<&'a str, &'a Response>,
-    max_rate_rad_s: BTreeMap<&'a str, &'a Estimate>,
+    max_rate_rad_s: BTreeMap<&'a str, &'a Estimated>,
     /// c0..c5 of the paper's Eq. 7, N.
-    thrust_coefficients: &'a [Estimate; 6],
+    thrust_coefficients: &'a [Estimated; 6],
     thrust: &'a ThrustEstimate,
     /// 1 and 99 % of the thrust command in flight, -1..1.
     thrust_flown: Option<[f64; 2]>,
     drag: &'a DragEstimate,
     battery: &'a BatteryEstimate,
-    accelerometer_bias_m_s2: &'a [Estimate; 3],
+    accelerometer_bias_m_s2: &'a [Estimated; 3],
     remarks: &'a [String],
     vehicle: &'a Vehicle,
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 /// A value and its 95 % confidence interval; where `why` is set, the logs cannot tell it and the numbers are null.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Estimate {
+pub struct Estimated {
     /// The best value.
     pub value: Option<f64>,
     /// Lower end of the interval.
@@ -17,7 +17,7 @@ pub struct Estimate {
     pub why: Option<String>,
 }
 
-impl Estimate {
+impl Estimated {
     /// `value` within `half_width` on either side.
     pub fn new(value: f64, half_width: f64) -> Self {
         Self { value: Some(value), low: Some(value - half_width), high: Some(value + half_width), why: None }

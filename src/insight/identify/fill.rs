@@ -1,9 +1,9 @@
 //! What was found and what was judged of it, into the result.
 
-use super::estimate::Estimate;
+use super::estimate::Estimated;
 use super::fits::Fits;
 use super::force::{DRAG_AT, TAU, THRUST};
-use super::judge::Judged;
+use super::judge::Accepted;
 use super::rates::{Compared, RateAxis};
 use super::result::{ComparedChannel, Identification, Response};
 use super::solve::Solution;
@@ -17,8 +17,8 @@ use crate::model::thrust::shape;
 use crate::model::vehicle::Vehicle;
 
 /// Thrust of the command `u` and full pack, N. What the limits of a curve leave no room for is not in the interval.
-pub fn thrust_of(all: &Fits, whole: &Vehicle, u: f64) -> Estimate {
-    let Ok(fit) = &all.thrust else { return Estimate::default() };
+pub fn thrust_of(all: &Fits, whole: &Vehicle, u: f64) -> Estimated {
+    let Ok(fit) = &all.thrust else { return Estimated::default() };
     let (mass, v) = (whole.mass_kg, whole.battery.full_v);
     let row = shape::at(u, v);
     let own = |i: usize, j: usize| fit.solution.covariance[(THRUST + i, THRUST + j)];
@@ -31,7 +31,7 @@ pub fn thrust_of(all: &Fits, whole: &Vehicle, u: f64) -> Estimate {
     } else {
         [f64::NEG_INFINITY, f64::INFINITY]
     };
-    Estimate {
+    Estimated {
         value: Some(value),
         low: Some((value - half).max(least.min(value))),
         high: Some((value + half).min(most.max(value))),
@@ -45,8 +45,8 @@ pub fn fill(
     data: &Data,
     all: &Fits,
     [train, validation]: &[Prediction; 2],
-    judged: Judged,
-    full: Estimate,
+    judged: Accepted,
+    full: Estimated,
     options: &IdentifyOptions,
 ) {
     out.kept = judged.kept;
@@ -94,7 +94,7 @@ fn compared(validation: &PredictedChannel, train: Option<&PredictedChannel>) -> 
 }
 
 /// A response, with the scores of its channel.
-fn response(out: &Identification, name: &str, tau_s: Estimate, offset: Estimate) -> Response {
+fn response(out: &Identification, name: &str, tau_s: Estimated, offset: Estimated) -> Response {
     let Some(channel) = out.channels.iter().find(|channel| channel.name == name) else {
         return Response { tau_s, offset, ..Response::default() };
     };
@@ -112,28 +112,28 @@ fn response(out: &Identification, name: &str, tau_s: Estimate, offset: Estimate)
 }
 
 /// The estimate, or that it was left, and why.
-fn judged(estimate: Estimate, key: &str, judged: &Judged) -> Estimate {
+fn judged(estimate: Estimated, key: &str, judged: &Accepted) -> Estimated {
     match judged.left.get(key) {
         Some(why) => estimate.left(why),
         None => estimate,
     }
 }
 
-fn rate(out: &mut Identification, data: &Data, axis: usize, all: &Fits, verdict: &Judged, options: &IdentifyOptions) {
+fn rate(out: &mut Identification, data: &Data, axis: usize, all: &Fits, verdict: &Accepted, options: &IdentifyOptions) {
     let name = AXES[axis];
     let (lag_key, rate_key) = (format!("time_constant_s.{name}"), format!("max_rate_deg_s.{name}"));
     let fit = match &all.rates[axis] {
         Ok(fit) => fit,
         Err(why) => {
-            out.response[axis] = Response { tau_s: Estimate::unknown(why), ..Response::default() };
-            out.max_rate_rad_s[axis] = Estimate::unknown(why);
+            out.response[axis] = Response { tau_s: Estimated::unknown(why), ..Response::default() };
+            out.max_rate_rad_s[axis] = Estimated::unknown(why);
             return;
         }
     };
     let degrees = 1f64.to_degrees();
-    let tau = judged(Estimate::of(fit, 0), &lag_key, verdict);
-    out.response[axis] = response(out, &format!("{name} rate"), tau, Estimate::of(fit, 2).times(degrees));
-    let gain = Estimate::of(fit, 1);
+    let tau = judged(Estimated::of(fit, 0), &lag_key, verdict);
+    out.response[axis] = response(out, &format!("{name} rate"), tau, Estimated::of(fit, 2).times(degrees));
+    let gain = Estimated::of(fit, 1);
     let assumed = out.lent("full_rate_deg_s").is_some();
     let most = gain.times(out.full_rate_rad_s[axis]);
     let most = if assumed && verdict.kept.rate[axis] {
@@ -181,17 +181,17 @@ fn delay(out: &mut Identification, data: &Data, axis: usize, options: &IdentifyO
     }
 }
 
-fn pack(out: &mut Identification, all: &Fits, verdict: &Judged) {
+fn pack(out: &mut Identification, all: &Fits, verdict: &Accepted) {
     let fit = match &all.battery {
         Ok(fit) => fit,
         Err(why) => {
-            out.battery.initial_v = Estimate::unknown(why);
-            out.battery.rate_v_s = Estimate::unknown(why);
+            out.battery.initial_v = Estimated::unknown(why);
+            out.battery.rate_v_s = Estimated::unknown(why);
             return;
         }
     };
-    let rate = judged(Estimate::of(fit, battery::RATE), "battery.rate_v_s", verdict);
-    out.battery.initial_v = judged(Estimate::of(fit, battery::INITIAL), "battery", verdict);
+    let rate = judged(Estimated::of(fit, battery::RATE), "battery.rate_v_s", verdict);
+    out.battery.initial_v = judged(Estimated::of(fit, battery::INITIAL), "battery", verdict);
     out.battery.rate_v_s = judged(rate, "battery", verdict);
     out.battery.score = out.channels.iter().find(|c| c.name == "voltage").map(ComparedChannel::score);
     if verdict.kept.volts {
@@ -203,26 +203,26 @@ fn pack(out: &mut Identification, all: &Fits, verdict: &Judged) {
     }
 }
 
-fn thrust(out: &mut Identification, all: &Fits, verdict: &Judged, full: Estimate) {
+fn thrust(out: &mut Identification, all: &Fits, verdict: &Accepted, full: Estimated) {
     let fit = match &all.thrust {
         Ok(fit) => fit,
         Err(why) => {
-            out.response[3].tau_s = Estimate::unknown(why);
-            out.thrust_n = std::array::from_fn(|_| Estimate::unknown(why));
-            out.thrust.full_n = Estimate::unknown(why);
+            out.response[3].tau_s = Estimated::unknown(why);
+            out.thrust_n = std::array::from_fn(|_| Estimated::unknown(why));
+            out.thrust.full_n = Estimated::unknown(why);
             return;
         }
     };
     let mass = out.vehicle.mass_kg;
-    let tau = if fit.lags { Estimate::of(&fit.solution, TAU) } else { Estimate::default() };
+    let tau = if fit.lags { Estimated::of(&fit.solution, TAU) } else { Estimated::default() };
     let tau = judged(tau, "time_constant_s.thrust", verdict);
-    let offset = all.bias.as_ref().map_or_else(Estimate::default, |bias| Estimate::of(bias, 2));
+    let offset = all.bias.as_ref().map_or_else(Estimated::default, |bias| Estimated::of(bias, 2));
     out.response[3] = response(out, "specific force z", tau, offset);
     out.flown = Some(fit.flown);
     let why = "the voltage tells nothing of it";
     let coefficient = |k: usize| {
         if k > 3 && all.no_voltage.is_some() {
-            return Estimate::unknown(all.no_voltage.as_deref().unwrap_or(why));
+            return Estimated::unknown(all.no_voltage.as_deref().unwrap_or(why));
         }
         judged(coefficient(&fit.solution, k, all).times(mass), "thrust_n", verdict)
     };
@@ -232,7 +232,7 @@ fn thrust(out: &mut Identification, all: &Fits, verdict: &Judged, full: Estimate
     words.source = fit.source;
     words.full_n = judged(full, "thrust_n", verdict);
     words.over_motors_n = fit.motors.as_ref().map(over_motors);
-    words.rotor_lag_s = fit.motors.as_ref().map_or_else(Estimate::default, |s| Estimate::of(s, TAU));
+    words.rotor_lag_s = fit.motors.as_ref().map_or_else(Estimated::default, |s| Estimated::of(s, TAU));
     words.command_lag_s = fit.chain.and_then(|chain| chain.command_lag_s);
     words.command_r2 = fit.mixer.as_ref().map(|mixer| mixer.score.r2);
     if !verdict.kept.thrust {
@@ -258,11 +258,11 @@ fn thrust(out: &mut Identification, all: &Fits, verdict: &Judged, full: Estimate
 }
 
 /// A coefficient of the curve; c0 takes over what is uncertain about the accelerometer's bias.
-fn coefficient(solution: &Solution, k: usize, all: &Fits) -> Estimate {
-    let own = Estimate::of(solution, THRUST + k);
+fn coefficient(solution: &Solution, k: usize, all: &Fits) -> Estimated {
+    let own = Estimated::of(solution, THRUST + k);
     match (&all.bias, own.value, own.high) {
         (Some(bias), Some(value), Some(high)) if k == 0 => {
-            Estimate::new(value, (high - value).hypot(bias.half_width(2)))
+            Estimated::new(value, (high - value).hypot(bias.half_width(2)))
         }
         _ => own,
     }
@@ -270,15 +270,15 @@ fn coefficient(solution: &Solution, k: usize, all: &Fits) -> Estimate {
 
 /// The logs tell three numbers, drag over mass along each axis; four make the ellipsoid. The coefficient stays the base
 /// vehicle's, and the semi-axes follow.
-fn drag(out: &mut Identification, all: &Fits, verdict: &Judged) {
+fn drag(out: &mut Identification, all: &Fits, verdict: &Accepted) {
     let fit = match (&all.thrust, &all.no_drag) {
         (Ok(fit), None) => fit,
         (_, Some(why)) | (Err(why), None) => {
-            out.drag.k_1_m = std::array::from_fn(|_| Estimate::unknown(why));
+            out.drag.k_1_m = std::array::from_fn(|_| Estimated::unknown(why));
             return;
         }
     };
-    out.drag.k_1_m = [0, 1, 2].map(|i| judged(Estimate::of(&fit.solution, DRAG_AT + i), "drag", verdict));
+    out.drag.k_1_m = [0, 1, 2].map(|i| judged(Estimated::of(&fit.solution, DRAG_AT + i), "drag", verdict));
     if !verdict.kept.drag {
         return;
     }
@@ -297,10 +297,10 @@ fn drag(out: &mut Identification, all: &Fits, verdict: &Judged) {
 
 fn bias(out: &mut Identification, all: &Fits) {
     out.accelerometer_bias_m_s2 = match &all.bias {
-        Some(bias) => [0, 1, 2].map(|k| Estimate::of(bias, k)),
+        Some(bias) => [0, 1, 2].map(|k| Estimated::of(bias, k)),
         None => {
             let why = "no odometry fast enough to tell it from thrust; c0 contains it";
-            std::array::from_fn(|_| Estimate::unknown(why))
+            std::array::from_fn(|_| Estimated::unknown(why))
         }
     };
 }

@@ -1,6 +1,6 @@
 //! Every fit to one part of the flights, and the vehicle that they make.
 
-use super::force::{DRAG_AT, OFFSET, TAU, THRUST, Terms};
+use super::force::{DRAG_AT, ForceTerms, OFFSET, TAU, THRUST};
 use super::rates::RateAxis;
 use super::solve::Solution;
 use super::thrust::{self, ThrustFit};
@@ -69,7 +69,7 @@ impl Fits {
         out
     }
 
-    fn terms(&self, data: &Data, part: DataPart, start: &Vehicle, options: &IdentifyOptions) -> Terms {
+    fn terms(&self, data: &Data, part: DataPart, start: &Vehicle, options: &IdentifyOptions) -> ForceTerms {
         let drag = self.no_drag.is_none();
         let moving = data.flights.iter().any(|flight| flight.velocity[0].iter().any(|v| v.is_finite()));
         let lent = ellipsoid(&start.drag).map(|k| k / start.mass_kg);
@@ -77,8 +77,8 @@ impl Fits {
             Ok(solution) => battery::pack(data, part, solution, &start.battery),
             Err(_) => start.battery,
         };
-        Terms {
-            curves: Terms::curve(self.no_voltage.is_none()),
+        ForceTerms {
+            curves: ForceTerms::curve(self.no_voltage.is_none()),
             drag,
             given_drag: if !drag && moving { lent } else { [0.0; 3] },
             bias: self.bias.as_ref().map_or([0.0; 3], |b| [0.0, 0.0, b.values[2]]),

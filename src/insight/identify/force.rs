@@ -34,7 +34,7 @@ pub const SQUARE: [f64; 6] = [0.25, 0.5, 0.25, 0.0, 0.0, 0.0];
 
 /// What is fitted.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Terms {
+pub struct ForceTerms {
     /// The thrust curve is a sum of these, each as c0..c5.
     pub curves: Vec<[f64; 6]>,
     /// Drag, with the constant offsets of the specific force along x and y beside it.
@@ -51,7 +51,7 @@ pub struct Terms {
     pub gravity: f64,
 }
 
-impl Terms {
+impl ForceTerms {
     /// The terms of a whole curve: c0..c3, with c4 and c5 where the voltage tells them.
     pub fn curve(by_voltage: bool) -> Vec<[f64; 6]> {
         let unit = |k: usize| std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
@@ -67,7 +67,7 @@ impl Terms {
 pub struct Force<'a> {
     data: &'a Data,
     inputs: &'a Inputs,
-    terms: Terms,
+    terms: ForceTerms,
     /// Along x, y, z, of every flight, m/s2, smoothed.
     measured: [Vec<Vec<f64>>; 3],
     /// Voltage, V, or 0 where the terms leave it out.
@@ -76,7 +76,7 @@ pub struct Force<'a> {
 
 impl<'a> Force<'a> {
     /// Of what the accelerometer measured; where `thrust` (m/s2, every flight) is given, along z of that.
-    pub fn new(data: &'a Data, inputs: &'a Inputs, terms: Terms, thrust: Option<&[Vec<f64>]>) -> Self {
+    pub fn new(data: &'a Data, inputs: &'a Inputs, terms: ForceTerms, thrust: Option<&[Vec<f64>]>) -> Self {
         let channel = |k: usize| {
             let one = |(f, flight): (usize, &PreparedFlight)| {
                 let force = match thrust {
@@ -181,7 +181,7 @@ impl<'a> Force<'a> {
         let starts = taus.iter().filter_map(|&tau| self.linear(tau, &thinned, &limits).map(|(w, left)| (left, tau, w)));
         let (_, tau, weights) = starts.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let unknowns = self.unknowns(tau, &weights);
-        let layout = Layout { terms: &self.terms, lags: self.inputs.lags() };
+        let layout = ForceColumns { terms: &self.terms, lags: self.inputs.lags() };
         let n = weights.len();
         let widened = |h: &Halfspace, at: usize| {
             let mut row = vec![0.0; unknowns.len()];
@@ -256,12 +256,12 @@ fn slow(flight: &PreparedFlight) -> Vec<f64> {
 }
 
 /// Where the unknowns of a fit are among a solution's values.
-struct Layout<'a> {
-    terms: &'a Terms,
+struct ForceColumns<'a> {
+    terms: &'a ForceTerms,
     lags: bool,
 }
 
-impl Layout<'_> {
+impl ForceColumns<'_> {
     /// The values are this matrix times the unknowns.
     fn matrix(&self) -> DMatrix<f64> {
         let first = usize::from(self.lags);

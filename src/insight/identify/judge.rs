@@ -2,7 +2,7 @@
 //! that the flight tells at all. The others are left to the base vehicle, with the reason.
 
 use super::AXES;
-use super::estimate::Estimate;
+use super::estimate::Estimated;
 use super::fits::{Fits, Kept};
 use super::force::{DRAG_AT, TAU};
 use crate::base::stats::Score;
@@ -11,7 +11,7 @@ use crate::insight::predict::{PredictedChannel, Prediction};
 use std::collections::BTreeMap;
 
 /// What is kept, and why the rest is not, by the key of a vehicle file.
-pub struct Judged {
+pub struct Accepted {
     pub kept: Kept,
     pub left: BTreeMap<String, String>,
 }
@@ -24,7 +24,7 @@ pub fn unpredictive(score: Option<Score>) -> Option<String> {
 }
 
 /// Why this number is not told, whatever it predicts.
-pub fn vague(estimate: &Estimate) -> Option<String> {
+pub fn vague(estimate: &Estimated) -> Option<String> {
     let value = estimate.value?;
     match estimate.interval() {
         None => Some(format!("the fit ended at the bound of the search, {value:.4}")),
@@ -43,8 +43,8 @@ pub fn score(validation: &Prediction, name: &str) -> Option<Score> {
 
 /// Judges the fits to all of the flights by how those to the training part predict the rest. `flown` is the thrust at
 /// the highest command that was flown.
-pub fn judge(all: &Fits, validation: &Prediction, flown: &Estimate) -> Judged {
-    let mut out = Judged { kept: all.everything(), left: BTreeMap::new() };
+pub fn judge(all: &Fits, validation: &Prediction, flown: &Estimated) -> Accepted {
+    let mut out = Accepted { kept: all.everything(), left: BTreeMap::new() };
     for axis in 0..3 {
         rate(axis, all, validation, &mut out);
     }
@@ -59,13 +59,13 @@ pub fn judge(all: &Fits, validation: &Prediction, flown: &Estimate) -> Judged {
     out
 }
 
-impl Judged {
+impl Accepted {
     fn leave(&mut self, key: &str, why: String) {
         self.left.insert(key.into(), why);
     }
 }
 
-fn rate(axis: usize, all: &Fits, validation: &Prediction, out: &mut Judged) {
+fn rate(axis: usize, all: &Fits, validation: &Prediction, out: &mut Accepted) {
     let name = AXES[axis];
     let (lag_key, rate_key) = (format!("time_constant_s.{name}"), format!("max_rate_deg_s.{name}"));
     let both = match &all.rates[axis] {
@@ -78,22 +78,22 @@ fn rate(axis: usize, all: &Fits, validation: &Prediction, out: &mut Judged) {
         return out.leave(&rate_key, why);
     }
     let Ok(fit) = &all.rates[axis] else { return };
-    if let Some(why) = vague(&Estimate::of(fit, 0)) {
+    if let Some(why) = vague(&Estimated::of(fit, 0)) {
         out.kept.lag[axis] = false;
         out.leave(&lag_key, why);
     }
-    if let Some(why) = vague(&Estimate::of(fit, 1)) {
+    if let Some(why) = vague(&Estimated::of(fit, 1)) {
         out.kept.rate[axis] = false;
         out.leave(&rate_key, why);
     }
 }
 
-fn battery(all: &Fits, validation: &Prediction, out: &mut Judged) {
+fn battery(all: &Fits, validation: &Prediction, out: &mut Accepted) {
     let fit = match &all.battery {
         Err(why) => return out.leave("battery", why.clone()),
         Ok(fit) => fit,
     };
-    let rate = Estimate::of(fit, super::battery::RATE);
+    let rate = Estimated::of(fit, super::battery::RATE);
     let rises = rate.value.is_some_and(|rate| rate > 0.0).then(|| "the voltage rises in flight".to_string());
     let why = rises.or_else(|| unpredictive(score(validation, "voltage"))).or_else(|| vague(&rate));
     if let Some(why) = why {
@@ -102,7 +102,7 @@ fn battery(all: &Fits, validation: &Prediction, out: &mut Judged) {
     }
 }
 
-fn thrust(all: &Fits, validation: &Prediction, flown: &Estimate, out: &mut Judged) {
+fn thrust(all: &Fits, validation: &Prediction, flown: &Estimated, out: &mut Accepted) {
     let fit = match &all.thrust {
         Err(why) => {
             ["time_constant_s.thrust", "thrust_n"].into_iter().for_each(|key| out.leave(key, why.clone()));
@@ -119,14 +119,14 @@ fn thrust(all: &Fits, validation: &Prediction, flown: &Estimate, out: &mut Judge
         return out.leave("time_constant_s.thrust", "the log has rotor speeds and no command that they follow".into());
     }
     // Of a chain, the rotors' own lag is the one that is looked for.
-    let lag = Estimate::of(fit.motors.as_ref().unwrap_or(&fit.solution), TAU);
+    let lag = Estimated::of(fit.motors.as_ref().unwrap_or(&fit.solution), TAU);
     if let Some(why) = vague(&lag) {
         out.kept.lag[3] = false;
         out.leave("time_constant_s.thrust", why);
     }
 }
 
-fn drag(all: &Fits, validation: &Prediction, out: &mut Judged) {
+fn drag(all: &Fits, validation: &Prediction, out: &mut Accepted) {
     let why = match (&all.no_drag, &all.thrust) {
         (Some(why), _) | (None, Err(why)) => Some(why.clone()),
         (None, Ok(_)) if !out.kept.thrust => Some("it was fitted with the thrust, which is not kept".into()),
@@ -134,7 +134,7 @@ fn drag(all: &Fits, validation: &Prediction, out: &mut Judged) {
             let across = ["specific force x", "specific force y"].map(|name| unpredictive(score(validation, name)));
             let largest =
                 (0..3).map(|k| DRAG_AT + k).max_by(|&a, &b| fit.solution.values[a].total_cmp(&fit.solution.values[b]));
-            let largest = largest.and_then(|k| vague(&Estimate::of(&fit.solution, k)));
+            let largest = largest.and_then(|k| vague(&Estimated::of(&fit.solution, k)));
             match across {
                 [Some(why), Some(_)] => Some(why),
                 _ => largest,

@@ -1,6 +1,6 @@
 //! What an identification found: the vehicle, and everything to judge it by.
 
-use super::estimate::Estimate;
+use super::estimate::Estimated;
 use super::fits::Kept;
 use super::rates::Compared;
 use super::{AXES, IdentifyOptions, fastest};
@@ -15,9 +15,9 @@ use serde::Serialize;
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Response {
     /// Time constant, s.
-    pub tau_s: Estimate,
+    pub tau_s: Estimated,
     /// Constant that the measurement has too much, in `unit`.
-    pub offset: Estimate,
+    pub offset: Estimated,
     /// Root mean square error, in `unit`.
     pub rmse: Option<f64>,
     /// Mean absolute error, in `unit`.
@@ -36,7 +36,7 @@ pub struct Response {
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct DragEstimate {
     /// Deceleration over speed squared along x, y, z, 1/m.
-    pub k_1_m: [Estimate; 3],
+    pub k_1_m: [Estimated; 3],
     /// The ellipsoid with these, given its coefficient.
     pub semi_axes_m: Option<[f64; 3]>,
     /// The base vehicle's drag coefficient, without unit.
@@ -51,7 +51,7 @@ pub struct ThrustEstimate {
     /// What it was identified from.
     pub source: ThrustSource,
     /// Lag of the rotors behind the motors' outputs, where these were logged, s.
-    pub rotor_lag_s: Estimate,
+    pub rotor_lag_s: Estimated,
     /// Lag of the motors' outputs behind the collective command, s, and the share of their mean that it explains.
     pub command_lag_s: Option<f64>,
     /// R2 of the mean motor output as the collective command tells it.
@@ -61,7 +61,7 @@ pub struct ThrustEstimate {
     /// Throttle that carries the vehicle in the middle of its pack, 0..1.
     pub hover_throttle: Option<f64>,
     /// Thrust of full throttle and full pack, N.
-    pub full_n: Estimate,
+    pub full_n: Estimated,
     /// 1 and 99 % of the throttle in flight, 0..1.
     pub flown_throttle: Option<[f64; 2]>,
 }
@@ -70,9 +70,9 @@ pub struct ThrustEstimate {
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct BatteryEstimate {
     /// Voltage at the start, V.
-    pub initial_v: Estimate,
+    pub initial_v: Estimated,
     /// Change of the voltage, V/s.
-    pub rate_v_s: Estimate,
+    pub rate_v_s: Estimated,
     /// Of the line, on the validation part, V.
     pub score: Option<Score>,
 }
@@ -110,9 +110,9 @@ pub struct Identification {
     /// Roll, pitch, yaw, thrust.
     pub response: [Response; 4],
     /// Body rates at full command, rad/s.
-    pub max_rate_rad_s: [Estimate; 3],
+    pub max_rate_rad_s: [Estimated; 3],
     /// c0..c5 of Eq. 7 for the command in [-1, 1], N.
-    pub thrust_n: [Estimate; 6],
+    pub thrust_n: [Estimated; 6],
     /// The same in numbers that people know.
     pub thrust: ThrustEstimate,
     /// Drag.
@@ -120,7 +120,7 @@ pub struct Identification {
     /// Discharge.
     pub battery: BatteryEstimate,
     /// Constant error of the accelerometer along x, y, z, m/s2.
-    pub accelerometer_bias_m_s2: [Estimate; 3],
+    pub accelerometer_bias_m_s2: [Estimated; 3],
     /// Body rates that a full command asks for, rad/s.
     pub full_rate_rad_s: [f64; 3],
     /// 1 and 99 % of the thrust command in flight, -1..1.
@@ -198,7 +198,7 @@ impl Identification {
     }
 
     /// Every parameter but the responses, as people read it: name, estimate, digits, unit.
-    pub fn parameters(&self) -> Vec<(String, Estimate, usize, &'static str)> {
+    pub fn parameters(&self) -> Vec<(String, Estimated, usize, &'static str)> {
         let mut rows = Vec::new();
         for (axis, rate) in AXES.iter().zip(&self.max_rate_rad_s) {
             rows.push((format!("maximum {axis} rate"), rate.times(1f64.to_degrees()), 1, "deg/s"));

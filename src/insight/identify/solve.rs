@@ -226,13 +226,13 @@ fn slope(unknowns: &[Unknown], values: &[f64], k: usize, here: &[Vec<f64>], resi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Philox, Stream};
+    use crate::base::rng::{Philox, RngStream};
     use rand::RngExt;
     use rand_distr::StandardNormal;
 
     /// y = a exp(-t / b) with white noise and a few gross outliers.
     fn data(seed: u64) -> (Vec<f64>, Vec<f64>, Vec<u32>) {
-        let mut rng = Philox::new(seed).sequence(Stream::Noise, 0, 0);
+        let mut rng = Philox::new(seed).sequence(RngStream::Noise, 0, 0);
         let t: Vec<f64> = (0..2000).map(|i| f64::from(i) * 0.002).collect();
         let mut y: Vec<f64> =
             t.iter().map(|t| 3.0 * (-t / 0.7).exp() + 0.1 * rng.sample::<f64, _>(StandardNormal)).collect();

@@ -1,7 +1,7 @@
 //! The thrust from whatever is nearest to the rotors: their speeds, the motors' outputs, or else the command; and from
 //! there the curve that a policy needs, over the collective command.
 
-use super::force::{DRAG_AT, Force, OFFSET, SQUARE, TAU, THRUST, Terms};
+use super::force::{DRAG_AT, Force, ForceTerms, OFFSET, SQUARE, TAU, THRUST};
 use super::inputs::Inputs;
 use super::mixer::{self, Mixer};
 use super::solve::Solution;
@@ -49,9 +49,9 @@ struct BySpeed {
 
 impl BySpeed {
     /// `None` where a flight has no speeds. `scale` (s/rad) makes a command of a speed.
-    fn fit(data: &Data, part: DataPart, terms: &Terms, scale: f64) -> Option<Self> {
+    fn fit(data: &Data, part: DataPart, terms: &ForceTerms, scale: f64) -> Option<Self> {
         let speeds = Inputs::speeds(data, scale)?;
-        let force = Force::new(data, &speeds, Terms { curves: vec![SQUARE], ..terms.clone() }, None);
+        let force = Force::new(data, &speeds, ForceTerms { curves: vec![SQUARE], ..terms.clone() }, None);
         let solution = force.fit(part)?;
         let per_square = solution.values[THRUST] / SQUARE[0] * scale * scale;
         Some(Self { thrust: force.thrust_by(&solution), per_square, flown: force.flown(0.0), solution })
@@ -77,7 +77,7 @@ impl BySpeed {
 }
 
 /// Fits what the logs have of the chain.
-pub fn fit(data: &Data, part: DataPart, terms: &Terms) -> Option<ThrustFit> {
+pub fn fit(data: &Data, part: DataPart, terms: &ForceTerms) -> Option<ThrustFit> {
     let scale = data.flights.first().and_then(|f| command_per_speed(&f.quality.log));
     let by_speed = BySpeed::fit(data, part, terms, scale.unwrap_or(1.0 / fastest_rotor(data)));
     if let Some(scale) = scale {
@@ -85,7 +85,7 @@ pub fn fit(data: &Data, part: DataPart, terms: &Terms) -> Option<ThrustFit> {
     }
     let (motors, command) = (Inputs::motors(data), Inputs::command(data));
     let inputs = motors.as_ref().unwrap_or(&command);
-    let without_drag = Terms { drag: false, given_drag: [0.0; 3], ..terms.clone() };
+    let without_drag = ForceTerms { drag: false, given_drag: [0.0; 3], ..terms.clone() };
     // What the rotors do is known where they were measured; the curve over what they were sent is fitted to that.
     let force = match &by_speed {
         Some(by_speed) => Force::new(data, inputs, without_drag.clone(), Some(&by_speed.thrust)),
@@ -121,7 +121,7 @@ pub fn fit(data: &Data, part: DataPart, terms: &Terms) -> Option<ThrustFit> {
 fn behind_mixer(
     data: &Data,
     part: DataPart,
-    terms: &Terms,
+    terms: &ForceTerms,
     mut chain: RotorChain,
     over_motors: ThrustFit,
 ) -> Option<ThrustFit> {
@@ -157,7 +157,7 @@ fn with_drag_of(to: &mut Solution, from: &Solution) {
 
 /// The curve over the command in place of that over the motors: the one of a vehicle that is nearest to it over
 /// commands and voltages, where they were flown most of all.
-fn over_command(solution: &mut Solution, chain: &RotorChain, terms: &Terms, flown: [f64; 2]) -> Option<()> {
+fn over_command(solution: &mut Solution, chain: &RotorChain, terms: &ForceTerms, flown: [f64; 2]) -> Option<()> {
     let n = terms.curves.len();
     let over_motors: [f64; 6] = std::array::from_fn(|k| solution.values[THRUST + k]);
     let (mut normal, mut right) = (DMatrix::zeros(n, n), vec![0.0; n]);

@@ -21,7 +21,7 @@ const SNAP_DEG: f64 = 4.0;
 type Pairs = Vec<(Vector3<f64>, Vector3<f64>)>;
 
 /// What turns one set of vectors into another.
-struct Turn {
+struct MountingTurn {
     /// Orthogonal; of determinant -1 where the axes are mirrored.
     matrix: Matrix3<f64>,
     /// Share of the squares that it explains, and that no turn at all does.
@@ -38,14 +38,14 @@ pub fn find(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
     }
     let up = Vector3::from(force.map(|x| median(&x)));
     let upright = up.z > up.x.abs().max(up.y.abs());
-    if let Some(turn) = Turn::of(&attitude(log, usable)) {
+    if let Some(turn) = MountingTurn::of(&attitude(log, usable)) {
         findings.extend(turn.told(upright, "the attitude"));
     } else if !upright && up.iter().all(|x| x.is_finite()) {
         // Thrust, and with it the median of the specific force, is along the body's z axis.
         let mut pairs = setpoints(log, usable);
         let size = (pairs.iter().map(|(rate, _)| rate.norm_squared()).sum::<f64>()).sqrt();
         pairs.push((up.normalize() * size, Vector3::z() * size));
-        findings.extend(Turn::of(&pairs).and_then(|turn| turn.told(upright, "setpoints and thrust")));
+        findings.extend(MountingTurn::of(&pairs).and_then(|turn| turn.told(upright, "setpoints and thrust")));
     }
 }
 
@@ -68,11 +68,11 @@ fn setpoints(log: &Log, usable: &[Span]) -> Pairs {
         let pairs = (0..chosen.len()).map(|i| (gyro(i), Vector3::from([asked[0][i], asked[1][i], asked[2][i]])));
         pairs.filter(|(a, b)| a.iter().chain(b.iter()).all(|x| x.is_finite())).collect()
     };
-    let fit = |pairs: &Pairs| Turn::of(pairs).map_or(f64::NEG_INFINITY, |turn| turn.fit);
+    let fit = |pairs: &Pairs| MountingTurn::of(pairs).map_or(f64::NEG_INFINITY, |turn| turn.fit);
     DELAYS_S.map(at).into_iter().max_by(|a, b| fit(a).total_cmp(&fit(b))).unwrap_or_default()
 }
 
-impl Turn {
+impl MountingTurn {
     /// The best in least squares (Kabsch 1976); `None` where too little was turned to tell.
     fn of(pairs: &Pairs) -> Option<Self> {
         let finite = |(a, b): &&(Vector3<f64>, Vector3<f64>)| a.iter().chain(b.iter()).all(|x| x.is_finite());

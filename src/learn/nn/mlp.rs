@@ -14,14 +14,14 @@ use std::ops::Range;
 
 /// Where the parameters of one network lie in the flat vector, in ranges that begin at multiples of 16.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shape {
+pub struct Layout {
     pub inputs: usize,
     pub outputs: usize,
     /// Offset of the first parameter.
     pub offset: usize,
 }
 
-impl Shape {
+impl Layout {
     /// First layer, `[inputs + 1][64]`: weights, and the biases as last row.
     pub fn first(&self) -> Range<usize> {
         self.offset..self.offset + (self.inputs + 1) * HIDDEN
@@ -66,7 +66,7 @@ impl<E: Copy + Default> Hidden<E> {
 /// `y` `[outputs][pitch]`.
 #[inline(always)]
 pub fn forward<L: Lane>(
-    shape: &Shape,
+    shape: &Layout,
     p: &[L::Elem],
     samples: usize,
     pitch: usize,
@@ -105,7 +105,7 @@ fn head<L: Lane>(w: &[L::Elem], b: &[L::Elem], samples: usize, pitch: usize, h: 
 
 /// Writes the transpose of the second layer's weights to `turned` `[64][64]`, for [`backward`].
 #[inline(always)]
-pub fn turn<L: Lane>(shape: &Shape, p: &[L::Elem], turned: &mut [L::Elem]) {
+pub fn turn<L: Lane>(shape: &Layout, p: &[L::Elem], turned: &mut [L::Elem]) {
     let p = &p[shape.second()];
     for (r, c) in (0..HIDDEN * HIDDEN / LANES / LANES).map(|i| (i / 4 * LANES, i % 4 * LANES)) {
         let mut block = build!(|i| L::from_slice(&p[(r + i) * HIDDEN + c..]));
@@ -119,7 +119,7 @@ pub fn turn<L: Lane>(shape: &Shape, p: &[L::Elem], turned: &mut [L::Elem]) {
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // the operands of one formula
 pub fn backward<L: Lane>(
-    shape: &Shape,
+    shape: &Layout,
     p: &[L::Elem],
     turned: &[L::Elem],
     samples: usize,

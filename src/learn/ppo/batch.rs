@@ -2,7 +2,7 @@
 
 /// A batch in rows of 16 samples; features lie `[row][feature][16]`.
 #[derive(Clone, Copy)]
-pub struct Batch<'a, E> {
+pub struct Minibatch<'a, E> {
     /// `[rows][observations][16]`
     pub observations: &'a [E],
     /// `[rows][4][16]`

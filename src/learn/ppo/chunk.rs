@@ -1,12 +1,12 @@
 //! Loss and gradient of a chunk of a minibatch, in tiles whose activations stay in cache from the first layer's forward
 //! to the first layer's gradient.
 
-use super::batch::Batch;
+use super::batch::Minibatch;
 use super::loss::{Samples, TERMS, Weights, loss};
 use crate::base::lane::{LANES, Lane, Real, build};
 use crate::learn::nn::Network;
 use crate::learn::nn::aligned::Aligned;
-use crate::learn::nn::mlp::{self, Hidden, Shape};
+use crate::learn::nn::mlp::{self, Hidden, Layout};
 use crate::learn::policy::ACTIONS;
 
 /// Rows of 16 samples in a tile.
@@ -18,7 +18,7 @@ pub struct Job<'a, E> {
     pub network: &'a Network<E>,
     /// The second layers' weights, transposed: actor, critic.
     pub turned: &'a [Aligned<E>; 2],
-    pub batch: &'a Batch<'a, E>,
+    pub batch: &'a Minibatch<'a, E>,
     pub weights: &'a Weights,
     /// 1 over the samples of the minibatch.
     pub share: f64,
@@ -106,7 +106,7 @@ fn tile<L: Lane>(
     mlp::forward::<L>(&network.actor, p, samples, PITCH, x, actor, mean);
     mlp::forward::<L>(&network.critic, p, samples, PITCH, x, critic, value);
     differentiate_loss::<L>(job, rows, mean, value, sums);
-    let mut back = |shape: &Shape, turned: &[L::Elem], h: &mut Hidden<L::Elem>, dy: &[L::Elem]| {
+    let mut back = |shape: &Layout, turned: &[L::Elem], h: &mut Hidden<L::Elem>, dy: &[L::Elem]| {
         mlp::backward::<L>(shape, p, turned, samples, PITCH, x, h, dy, gradient);
     };
     back(&network.actor, &job.turned[0], actor, mean);

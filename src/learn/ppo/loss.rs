@@ -32,7 +32,7 @@ pub struct Samples<L> {
 }
 
 /// Sums over lanes are left to the caller: everything here is per lane.
-pub struct Answer<L> {
+pub struct LossGradient<L> {
     /// Derivatives of the total by mean, log_std (without that of the Gaussian's entropy, which is
     /// constant) and value.
     pub d_mean: [L; ACTIONS],
@@ -42,12 +42,12 @@ pub struct Answer<L> {
     pub terms: [L; 6],
 }
 
-/// Per-sample terms, in the order of [`Answer::terms`]; half squared errors for `value`.
+/// Per-sample terms, in the order of [`LossGradient::terms`]; half squared errors for `value`.
 pub const TERMS: [&str; 6] = ["surrogate", "value", "magnitude", "approx_kl", "clip_fraction", "squash"];
 
 /// Loss and derivatives; `share` is 1 over the minibatch's samples and scales the derivatives.
 #[inline(always)]
-pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
+pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> LossGradient<L> {
     let one = L::one();
     let inverse = each!(s.log_std, |x| (-x).exp());
     let noise: [L; ACTIONS] = build!(|k| (s.z[k] - s.mean[k]) * inverse[k]);
@@ -63,7 +63,7 @@ pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> Answer<L> {
     let pull = share * L::of(2.0 * w.magnitude);
     let error = s.value - s.ret;
     let (squash, cost) = (squashes(w, s), share * L::of(-w.entropy));
-    Answer {
+    LossGradient {
         d_mean: build!(|k| {
             let slope = (-squashed[k]).mul_add(squashed[k], one);
             (d_log_prob * noise[k]).mul_add(inverse[k], (squashed[k] * slope).mul_add(pull, cost * squash[k].d_mean))

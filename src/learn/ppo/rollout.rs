@@ -3,7 +3,7 @@
 
 use super::{Environment, Step};
 use crate::base::lane::{Bits, Kernel, LANES, Lane32, Level, build, dispatch, each};
-use crate::base::rng::{Philox, Stream, normals};
+use crate::base::rng::{Philox, RngStream, normals};
 use crate::learn::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use crate::learn::policy;
 use rayon::prelude::*;
@@ -240,7 +240,7 @@ fn look<E: Environment, L: Lane32>(environment: &E, blocks: &[E::Block<L>; TILE_
 #[inline(always)]
 fn exploration<L: Lane32>(rng: &Philox, first: u32, step: u32) -> [L; policy::ACTIONS] {
     let environments = L::Bits::from_array(build!(|i| first + i as u32));
-    let w = rng.block(Stream::Action, environments, step, 0);
+    let w = rng.block(RngStream::Action, environments, step, 0);
     let ((n0, n1), (n2, n3)) = (normals::<L>(w[0], w[1]), normals::<L>(w[2], w[3]));
     [n0, n1, n2, n3]
 }

@@ -1,7 +1,7 @@
 //! A training under way: what one iteration reads and changes.
 
 use super::awake::awake;
-use super::batch::Batch;
+use super::batch::Minibatch;
 use super::config::PpoConfig;
 use super::loss::Weights;
 use super::rollout::{Rollout, Tile, collect};
@@ -9,7 +9,7 @@ use super::state::{TrainingState, rate_after};
 use super::update::{Hyper, Losses, Updater};
 use super::{Environment, Tally as _, gae};
 use crate::base::lane::Level;
-use crate::base::rng::{Philox, Stream};
+use crate::base::rng::{Philox, RngStream};
 use crate::learn::nn::adam::Adam;
 use crate::learn::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use rand::seq::SliceRandom;
@@ -49,7 +49,7 @@ impl<'a, E: Environment> Training<'a, E> {
         let network = Network::initialised(
             environment.observations(),
             config.log_std_initial,
-            &mut rng.sequence(Stream::Weights, 0, 0),
+            &mut rng.sequence(RngStream::Weights, 0, 0),
         );
         let rollout = Rollout::new(n, config.rollout, environment.observations());
         let samples = config.environments * config.rollout;
@@ -183,7 +183,7 @@ impl<'a, E: Environment> Training<'a, E> {
             max_gradient_norm: c.max_gradient_norm,
             adam_epsilon: c.adam_epsilon,
         };
-        let batch = Batch {
+        let batch = Minibatch {
             observations: &self.rollout.observations,
             z: &self.rollout.z,
             log_prob: &self.rollout.log_prob,
@@ -192,7 +192,7 @@ impl<'a, E: Environment> Training<'a, E> {
         };
         let (level, order, updater, network) = (self.level, &mut self.order, &mut self.updater, &mut self.network);
         let shuffles =
-            (0..c.epochs).map(|epoch| self.rng.sequence(Stream::Shuffle, epoch as u32, self.iterations as u32));
+            (0..c.epochs).map(|epoch| self.rng.sequence(RngStream::Shuffle, epoch as u32, self.iterations as u32));
         let losses = awake(|| {
             let mut losses = Losses::default();
             for mut shuffle in shuffles {

@@ -3,7 +3,7 @@
 //! Work is cut into chunks of a fixed number of rows whatever the thread count, each with a gradient of its own, summed
 //! in order: one thread and many give the same bits.
 
-use super::batch::Batch;
+use super::batch::Minibatch;
 use super::chunk::{Chunk, Job, Worker};
 use super::loss::{TERMS, Weights};
 use crate::base::lane::{Kernel, LANES, Lane, Lane32, Level, Real, dispatch};
@@ -62,23 +62,23 @@ impl Updater<f32> {
         &mut self,
         level: Level,
         network: &mut Network<f32>,
-        batch: &Batch<f32>,
+        batch: &Minibatch<f32>,
         rows: &[u32],
         hyper: &Hyper,
     ) -> Losses {
-        dispatch(level, Step { updater: self, network, batch, rows, hyper })
+        dispatch(level, UpdateStep { updater: self, network, batch, rows, hyper })
     }
 }
 
-struct Step<'a> {
+struct UpdateStep<'a> {
     updater: &'a mut Updater<f32>,
     network: &'a mut Network<f32>,
-    batch: &'a Batch<'a, f32>,
+    batch: &'a Minibatch<'a, f32>,
     rows: &'a [u32],
     hyper: &'a Hyper,
 }
 
-impl Kernel for Step<'_> {
+impl Kernel for UpdateStep<'_> {
     type Output = Losses;
     #[inline(always)]
     fn run<L: Lane32>(self) -> Losses {
@@ -102,7 +102,7 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Updater<E> {
     pub fn step_with<L: Lane<Elem = E>>(
         &mut self,
         network: &mut Network<E>,
-        batch: &Batch<E>,
+        batch: &Minibatch<E>,
         rows: &[u32],
         hyper: &Hyper,
     ) -> Losses {
@@ -115,7 +115,7 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Updater<E> {
     pub fn differentiate<L: Lane<Elem = E>>(
         &mut self,
         network: &Network<E>,
-        batch: &Batch<E>,
+        batch: &Minibatch<E>,
         rows: &[u32],
         weights: &Weights,
     ) -> Losses {

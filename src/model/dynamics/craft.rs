@@ -1,6 +1,6 @@
 //! A vehicle in flight, or 16: its state, and the equations that move it. Who flies one need not know which they are.
 
-use super::extended::{self, Extended, Memory};
+use super::extended::{self, EffectMemory, Extended};
 use super::{Factors, Parameters, State, specific_force, step};
 use crate::base::lane::{Lane, Real};
 use crate::model::vehicle::Vehicle;
@@ -17,7 +17,7 @@ pub struct Craft<R> {
 #[derive(Clone, Debug)]
 enum Equations<R> {
     Compact(Parameters<R>),
-    Extended(Box<(Extended<R>, Memory<R>)>),
+    Extended(Box<(Extended<R>, EffectMemory<R>)>),
 }
 
 impl Craft<f64> {
@@ -26,7 +26,7 @@ impl Craft<f64> {
         let equations = if vehicle.effects.is_empty() {
             Equations::Compact(Parameters::new(vehicle, factors, dt))
         } else {
-            Equations::Extended(Box::new((Extended::new(vehicle, factors, dt), Memory::before(state.command))))
+            Equations::Extended(Box::new((Extended::new(vehicle, factors, dt), EffectMemory::before(state.command))))
         };
         Craft { state, equations }
     }
@@ -49,7 +49,7 @@ impl<R> Craft<R> {
 
     /// The effects' numbers and what they remember, if there are effects: for tests.
     #[cfg(feature = "internals")]
-    pub fn extension(&mut self) -> Option<&mut (Extended<R>, Memory<R>)> {
+    pub fn extension(&mut self) -> Option<&mut (Extended<R>, EffectMemory<R>)> {
         match &mut self.equations {
             Equations::Compact(_) => None,
             Equations::Extended(e) => Some(e),

@@ -9,7 +9,7 @@ use crate::base::lane::{Lane, Real, build, set_lanes};
 use crate::model::effects::{self, EffectValues};
 use crate::model::vehicle::Vehicle;
 
-pub use memory::Memory;
+pub use memory::EffectMemory;
 pub use motion::{Drive, RigidBody, moved};
 pub use stages::{
     ForceInputs, actuator_response, body_rates, command_delays, elapsed, force, loaded, specific_force, terminal,
@@ -82,7 +82,7 @@ impl<L: Lane> Extended<L> {
 
 /// One step under the held command `action`: a function of its own, so that it is compiled once for each kind of number
 /// and not again in every kernel that steps.
-pub fn step<R: Real>(s: &mut State<R>, p: &Extended<R>, memory: &mut Memory<R>, action: [R; 4]) {
+pub fn step<R: Real>(s: &mut State<R>, p: &Extended<R>, memory: &mut EffectMemory<R>, action: [R; 4]) {
     R::vectorize(
         #[inline(always)]
         || {
@@ -98,7 +98,7 @@ pub fn step<R: Real>(s: &mut State<R>, p: &Extended<R>, memory: &mut Memory<R>, 
 
 /// `h` seconds while the commands `sent` arrive, with forces taken at the middle.
 #[inline(always)]
-fn part<R: Real>(s: &mut State<R>, p: &Extended<R>, memory: &mut Memory<R>, sent: [R; 4], h: R) {
+fn part<R: Real>(s: &mut State<R>, p: &Extended<R>, memory: &mut EffectMemory<R>, sent: [R; 4], h: R) {
     let half = h * R::of(0.5);
     let open = battery::discharged(s.voltage, p.compact.voltage_rate, half);
     let (voltage, polarisation) = terminal(p, open, s.command[3], memory.polarisation, h);

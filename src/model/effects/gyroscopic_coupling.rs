@@ -1,6 +1,6 @@
 //! Turning about two axes pushes the third: w_x' += k w_y w_z, w_y' -= k w_z w_x, less what the rate loop holds.
 
-use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Setpoint};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, CommandSetpoint};
 use crate::base::lane::Real;
 
 pub struct GyroscopicCoupling;
@@ -21,7 +21,7 @@ impl Effect for GyroscopicCoupling {
     };
 
     #[inline(always)]
-    fn setpoint<R: Real>(k: &[R], setpoint: &mut Setpoint<R>) {
+    fn setpoint<R: Real>(k: &[R], setpoint: &mut CommandSetpoint<R>) {
         let [x, y, z] = setpoint.rates;
         let (tau, max) = (setpoint.tau, setpoint.max_rate);
         setpoint.command[0] = setpoint.command[0] + k[0] * y * z * tau[0] / max[0];

@@ -1,6 +1,6 @@
 //! Curved stick response: a becomes (1 - e) a + e a^3.
 
-use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Setpoint};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, CommandSetpoint};
 use crate::base::lane::Real;
 
 pub struct RateExpo;
@@ -21,7 +21,7 @@ impl Effect for RateExpo {
     };
 
     #[inline(always)]
-    fn setpoint<R: Real>(k: &[R], setpoint: &mut Setpoint<R>) {
+    fn setpoint<R: Real>(k: &[R], setpoint: &mut CommandSetpoint<R>) {
         for i in 0..3 {
             let a = setpoint.command[i];
             setpoint.command[i] = k[0].mul_add(a * a * a - a, a);

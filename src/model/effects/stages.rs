@@ -11,7 +11,7 @@ pub struct CommandDelay<R> {
 
 /// Commands before the lag.
 #[derive(Clone, Copy, Debug)]
-pub struct Setpoint<R> {
+pub struct CommandSetpoint<R> {
     /// Roll, pitch, yaw, thrust, -1..1.
     pub command: [R; 4],
     /// Filtered throttle, 0..1.

@@ -1,7 +1,7 @@
 //! Yaw that fades where the motors saturate: the yaw command is scaled by 1 - k sat(s), sat rising from 0 at s = 0.8
 //! to 1 at 1.
 
-use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Setpoint};
+use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, CommandSetpoint};
 use crate::base::lane::Real;
 
 pub struct YawAuthorityLoss;
@@ -22,7 +22,7 @@ impl Effect for YawAuthorityLoss {
     };
 
     #[inline(always)]
-    fn setpoint<R: Real>(k: &[R], setpoint: &mut Setpoint<R>) {
+    fn setpoint<R: Real>(k: &[R], setpoint: &mut CommandSetpoint<R>) {
         let saturated = ((setpoint.throttle - R::of(0.8)) * R::of(5.0)).clamp(R::zero(), R::one());
         setpoint.command[2] = setpoint.command[2] * (R::one() - k[0] * saturated);
     }

@@ -85,7 +85,7 @@ pub fn limits(volts: [f64; 2], weight: f64, flown: [f64; 2]) -> Vec<ThrustLimit>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Philox, Stream};
+    use crate::base::rng::{Philox, RngStream};
     use crate::model::vehicle::Vehicle;
     use rand::RngExt;
 
@@ -103,7 +103,7 @@ mod tests {
     /// What lies within the limits is read, whatever it is.
     #[test]
     fn whatever_keeps_the_limits_is_read() {
-        let mut rng = Philox::new(11).sequence(Stream::Noise, 0, 0);
+        let mut rng = Philox::new(11).sequence(RngStream::Noise, 0, 0);
         let base = Vehicle::load("seed_class").unwrap();
         let mut kept = 0;
         for _ in 0..20_000 {

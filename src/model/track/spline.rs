@@ -14,7 +14,7 @@ const PIECES: usize = 256;
 /// make, need a detour that comes back to where it left; no shipped track has one.
 #[derive(Clone, Debug)]
 pub struct Spline {
-    segments: Vec<Segment>,
+    segments: Vec<CubicSegment>,
     /// Arc length at the start of each piece, and the total at the end, m.
     lengths: Vec<f64>,
 }
@@ -41,7 +41,8 @@ impl Spline {
         let count = points.len();
         assert!(count >= 2, "a closed curve needs two points");
         let point = |index: usize| points[index % count];
-        let segments = (0..count).map(|i| Segment::new(point(i + count - 1), point(i), point(i + 1), point(i + 2)));
+        let segments =
+            (0..count).map(|i| CubicSegment::new(point(i + count - 1), point(i), point(i + 1), point(i + 2)));
         let segments: Vec<_> = segments.collect();
         let mut lengths = vec![0.0];
         let mut total = 0.0;
@@ -117,9 +118,9 @@ impl Spline {
 
 /// A cubic `a + b t + c t^2 + d t^3`, t from 0 to 1.
 #[derive(Clone, Copy, Debug)]
-struct Segment([Vector3<f64>; 4]);
+struct CubicSegment([Vector3<f64>; 4]);
 
-impl Segment {
+impl CubicSegment {
     /// From `p1` to `p2`, with the neighbours before and after.
     fn new(p0: Vector3<f64>, p1: Vector3<f64>, p2: Vector3<f64>, p3: Vector3<f64>) -> Self {
         let (m1, m2) = ((p2 - p0) / 2.0, (p3 - p1) / 2.0);

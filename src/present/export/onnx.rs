@@ -9,7 +9,7 @@ use prost::Message;
 use serde_json::Value;
 
 #[derive(Clone, PartialEq, Message)]
-struct Model {
+struct ModelProto {
     #[prost(int64, tag = "1")]
     ir_version: i64,
     #[prost(string, tag = "2")]
@@ -43,19 +43,19 @@ struct Property {
 #[derive(Clone, PartialEq, Message)]
 struct Graph {
     #[prost(message, repeated, tag = "1")]
-    node: Vec<Node>,
+    node: Vec<NodeProto>,
     #[prost(string, tag = "2")]
     name: String,
     #[prost(message, repeated, tag = "5")]
-    initializer: Vec<Numbers>,
+    initializer: Vec<TensorProto>,
     #[prost(message, repeated, tag = "11")]
-    input: Vec<Named>,
+    input: Vec<ValueInfoProto>,
     #[prost(message, repeated, tag = "12")]
-    output: Vec<Named>,
+    output: Vec<ValueInfoProto>,
 }
 
 #[derive(Clone, PartialEq, Message)]
-struct Node {
+struct NodeProto {
     #[prost(string, repeated, tag = "1")]
     input: Vec<String>,
     #[prost(string, repeated, tag = "2")]
@@ -68,7 +68,7 @@ struct Node {
 
 /// `TensorProto`.
 #[derive(Clone, PartialEq, Message)]
-struct Numbers {
+struct TensorProto {
     #[prost(int64, repeated, tag = "1")]
     dims: Vec<i64>,
     #[prost(int32, tag = "2")]
@@ -81,24 +81,24 @@ struct Numbers {
 
 /// `ValueInfoProto`.
 #[derive(Clone, PartialEq, Message)]
-struct Named {
+struct ValueInfoProto {
     #[prost(string, tag = "1")]
     name: String,
     #[prost(message, optional, tag = "2")]
-    kind: Option<Kind>,
+    kind: Option<TypeProto>,
     #[prost(string, tag = "3")]
     doc_string: String,
 }
 
 /// `TypeProto`.
 #[derive(Clone, PartialEq, Message)]
-struct Kind {
+struct TypeProto {
     #[prost(message, optional, tag = "1")]
-    tensor: Option<Table>,
+    tensor: Option<TensorTypeProto>,
 }
 
 #[derive(Clone, PartialEq, Message)]
-struct Table {
+struct TensorTypeProto {
     #[prost(int32, tag = "1")]
     elem_type: i32,
     #[prost(message, optional, tag = "2")]
@@ -108,11 +108,11 @@ struct Table {
 #[derive(Clone, PartialEq, Message)]
 struct Sizes {
     #[prost(message, repeated, tag = "1")]
-    dim: Vec<Size>,
+    dim: Vec<DimensionProto>,
 }
 
 #[derive(Clone, PartialEq, Message)]
-struct Size {
+struct DimensionProto {
     #[prost(oneof = "OneSize", tags = "1, 2")]
     value: Option<OneSize>,
 }
@@ -137,7 +137,7 @@ pub fn model(exported: &Exported) -> Vec<u8> {
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), String::from);
     let property = |key: &str, value: String| Property { key: key.into(), value };
     let about = ["format", "racer", "flying", "training"].map(|key| property(key, text(&metadata[key])));
-    let model = Model {
+    let model = ModelProto {
         ir_version: IR_VERSION,
         producer_name: "racer".into(),
         producer_version: text(&metadata["racer"]),
@@ -160,12 +160,12 @@ fn graph(exported: &Exported) -> Graph {
     let mut initializer = Vec::new();
     for t in exported.content.tensors.iter().filter(|t| t.name.starts_with("actor.")) {
         let dims = t.shape.iter().map(|&n| n as i64).collect();
-        initializer.push(Numbers { dims, data_type: FLOAT, name: t.name.clone(), raw_data: t.bytes.clone() });
+        initializer.push(TensorProto { dims, data_type: FLOAT, name: t.name.clone(), raw_data: t.bytes.clone() });
     }
     let mut from = "observation".to_string();
     for layer in 0..3 {
         let (sum, to) = (format!("sum_{layer}"), if layer == 2 { "action".into() } else { format!("hidden_{layer}") });
-        let of = |input: Vec<String>, output: &str, op: &str| Node {
+        let of = |input: Vec<String>, output: &str, op: &str| NodeProto {
             input,
             output: vec![output.into()],
             name: format!("{op}_{layer}"),
@@ -183,9 +183,9 @@ fn graph(exported: &Exported) -> Graph {
 }
 
 /// A table of any number of rows.
-fn named(name: &str, columns: usize, doc: &str) -> Named {
-    let rows = Size { value: Some(OneSize::Free("rows".into())) };
-    let columns = Size { value: Some(OneSize::Fixed(columns as i64)) };
-    let table = Table { elem_type: FLOAT, shape: Some(Sizes { dim: vec![rows, columns] }) };
-    Named { name: name.into(), kind: Some(Kind { tensor: Some(table) }), doc_string: doc.into() }
+fn named(name: &str, columns: usize, doc: &str) -> ValueInfoProto {
+    let rows = DimensionProto { value: Some(OneSize::Free("rows".into())) };
+    let columns = DimensionProto { value: Some(OneSize::Fixed(columns as i64)) };
+    let table = TensorTypeProto { elem_type: FLOAT, shape: Some(Sizes { dim: vec![rows, columns] }) };
+    ValueInfoProto { name: name.into(), kind: Some(TypeProto { tensor: Some(table) }), doc_string: doc.into() }
 }

@@ -2,7 +2,7 @@
 //!
 //! Names of messages and fields: Foxglove's published schemas (docs.foxglove.dev/docs/visualization/message-schemas).
 
-use super::{Frame, ReplayVehicle};
+use super::{ReplayFrame, ReplayVehicle};
 use crate::model::track::{Gate, GateKind, Track};
 use crate::present::colour::viridis;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
@@ -42,7 +42,7 @@ fn colour([r, g, b, a]: [f64; 4]) -> Value {
 }
 
 /// `foxglove.FrameTransform` of a vehicle.
-pub fn transform(ns: u64, i: usize, frame: &Frame) -> Value {
+pub fn transform(ns: u64, i: usize, frame: &ReplayFrame) -> Value {
     json!({
         "timestamp": stamp(ns),
         "parent_frame_id": WORLD,
@@ -153,14 +153,14 @@ fn line(kind: u8, thickness: f64, points: Vec<Value>, solid: [f64; 4], colours: 
 }
 
 /// Frames of a path, at most [`PLACES`] and one.
-fn kept(vehicle: &ReplayVehicle) -> impl Iterator<Item = &Frame> {
+fn kept(vehicle: &ReplayVehicle) -> impl Iterator<Item = &ReplayFrame> {
     vehicle.frames.iter().step_by(vehicle.frames.len().div_ceil(PLACES).max(1))
 }
 
 /// The whole path of a vehicle; that of the first coloured by speed, of at most `top` m/s.
 pub fn path(ns: u64, i: usize, vehicle: &ReplayVehicle, top: f64) -> Value {
     let points = kept(vehicle).map(|frame| vector(frame.position)).collect();
-    let shade = |frame: &Frame| {
+    let shade = |frame: &ReplayFrame| {
         let plotters::style::RGBColor(r, g, b) = viridis(frame.speed() / top);
         colour([f64::from(r) / 255.0, f64::from(g) / 255.0, f64::from(b) / 255.0, 1.0])
     };

@@ -1,6 +1,6 @@
 //! A recorded flight, to be shown.
 
-use super::{Frame, Replay, ReplayVehicle, laps};
+use super::{Replay, ReplayFrame, ReplayVehicle, laps};
 use crate::base::check::BadInput;
 use crate::flight::Log;
 use crate::flight::series::{held, interpolated};
@@ -44,11 +44,11 @@ pub fn recorded(log: &Log, track: Option<&Track>) -> Result<Replay, BadInput> {
         values.into_iter().map(scaled).collect()
     });
     let voltage = sampled(&log.battery.time_s, &log.battery.column(0), &times, true);
-    let mut all: Vec<Frame> = Vec::with_capacity(kept.len());
+    let mut all: Vec<ReplayFrame> = Vec::with_capacity(kept.len());
     for (n, &i) in kept.iter().enumerate() {
         let [x, y, z, qw, qx, qy, qz, u, v, w] = poses.rows[i];
         let axes = body_axes([qw, qx, qy, qz]);
-        all.push(Frame {
+        all.push(ReplayFrame {
             time_s: times[n],
             position: [x, y, z],
             velocity: std::array::from_fn(|k| axes[0][k] * u + axes[1][k] * v + axes[2][k] * w),
@@ -77,7 +77,7 @@ fn sampled(at: &[f64], values: &[f64], times: &[f64], linear: bool) -> Vec<f64> 
 }
 
 /// The gates that the flight passed in their order, from whichever it passed first; sets the gates flown to.
-fn pass(flight: &mut [Frame], track: &Track) -> Vec<(f64, usize)> {
+fn pass(flight: &mut [ReplayFrame], track: &Track) -> Vec<(f64, usize)> {
     let gates = frames(track, None);
     let mut passes: Vec<(f64, usize)> = Vec::new();
     let mut target = None;

@@ -3,7 +3,7 @@
 
 use super::foxglove::{self, body, stamp};
 use super::timed::{TimedMessage, write};
-use super::{Frame, Replay};
+use super::{Replay, ReplayFrame};
 use crate::base::error::{Error, Result};
 use crate::race::env::observe::LAYOUT;
 use serde_json::{Map, Value, json};
@@ -50,7 +50,7 @@ fn at(replay: &Replay, time_s: f64) -> Result<u64> {
 fn timeless(replay: &Replay) -> Result<Vec<TimedMessage>> {
     let first = replay.vehicles.iter().filter_map(|v| v.frames.first()).map(|frame| frame.time_s);
     let ns = at(replay, first.fold(f64::INFINITY, f64::min))?;
-    let top = replay.vehicles.iter().flat_map(|v| &v.frames).map(Frame::speed).fold(1.0, f64::max);
+    let top = replay.vehicles.iter().flat_map(|v| &v.frames).map(ReplayFrame::speed).fold(1.0, f64::max);
     let each = |entity: &dyn Fn(usize) -> Value| foxglove::scene((0..replay.vehicles.len()).map(entity).collect());
     const SCENE: &str = "foxglove.SceneUpdate";
     let mut messages = vec![
@@ -75,12 +75,12 @@ fn known(mut message: Value) -> Value {
     message
 }
 
-fn commands(ns: u64, frame: &Frame) -> Value {
+fn commands(ns: u64, frame: &ReplayFrame) -> Value {
     let [roll, pitch, yaw, thrust] = frame.command;
     known(json!({ "timestamp": stamp(ns), "roll": roll, "pitch": pitch, "yaw": yaw, "thrust": thrust }))
 }
 
-fn state(ns: u64, frame: &Frame) -> Value {
+fn state(ns: u64, frame: &ReplayFrame) -> Value {
     let vector = |[x, y, z]: [f64; 3]| json!({ "x": x, "y": y, "z": z });
     known(json!({
         "timestamp": stamp(ns),

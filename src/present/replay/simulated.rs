@@ -1,6 +1,6 @@
 //! A policy's race, to be shown.
 
-use super::{Frame, Replay, ReplayVehicle, laps};
+use super::{Replay, ReplayFrame, ReplayVehicle, laps};
 use crate::base::lane::{Level, dispatch};
 use crate::learn::nn::Network;
 use crate::model::track::Track;
@@ -39,7 +39,7 @@ pub fn race(
 }
 
 fn vehicle(name: String, raced: &Raced, track: &Track, dt: f64) -> ReplayVehicle {
-    let frames = raced.steps.iter().enumerate().map(|(step, (craft, command, target))| Frame {
+    let frames = raced.steps.iter().enumerate().map(|(step, (craft, command, target))| ReplayFrame {
         time_s: step as f64 * dt,
         position: craft.state.position.map(f64::from),
         velocity: craft.state.velocity.map(f64::from),

@@ -2,7 +2,7 @@
 
 use super::commands::{self, Commands};
 use super::figures::{lap_title, training};
-use super::run::{Figure, page};
+use super::run::{StudyFigure, page};
 use super::{Drawn, health, lap, spread as spreading};
 use crate::base::error::Result;
 use crate::base::lane::Level;
@@ -38,7 +38,7 @@ pub fn draw(path: &Path, beside: Option<&Path>) -> Result<Drawn> {
         let mut figures = figures(path, &all)?;
         let rows = healthy_or_not(path)?;
         let caption = "Numbers of the training; orange lines are the bounds of what is healthy.";
-        figures.push(Figure { name: "health", caption: caption.into(), svg: health::svg(&rows)? });
+        figures.push(StudyFigure { name: "health", caption: caption.into(), svg: health::svg(&rows)? });
         let judged = judge(&rows.iter().map(|row| row.1).collect::<Vec<_>>());
         let flown: Vec<_> = all.iter().map(|f| (f.name.as_str(), &f.report)).collect();
         let title = format!("Run {}", one.name);
@@ -59,11 +59,11 @@ fn healthy_or_not(path: &Path) -> Result<Vec<health::HealthRow>> {
 }
 
 /// The figures of the first of `all`, which is the run in `path`; the others' commands stand beside its own.
-fn figures(path: &Path, all: &[&FlownRun]) -> Result<Vec<Figure>> {
+fn figures(path: &Path, all: &[&FlownRun]) -> Result<Vec<StudyFigure>> {
     let one = all[0];
     let about = &one.snapshot.about;
     let mut figures = Vec::new();
-    let mut add = |name, caption: &str, svg| figures.push(Figure { name, caption: caption.into(), svg });
+    let mut add = |name, caption: &str, svg| figures.push(StudyFigure { name, caption: caption.into(), svg });
     // A run that was ended early has no evaluations.
     if let Ok(snapshots) = evaluated::read(path) {
         let rows = metrics::read(&path.join(METRICS), ["time/seconds", "episode/gates"])?;

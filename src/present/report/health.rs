@@ -4,7 +4,7 @@ use super::drawing;
 use super::plot::{self, BLUE, ORANGE, TEXT};
 use crate::base::error::Result;
 use crate::base::stats;
-use crate::present::run::health::{BOUNDS, Bound, Judged};
+use crate::present::run::health::{BOUNDS, Bound, JudgedNumber};
 use maud::{Markup, html};
 use plotters::prelude::*;
 
@@ -49,7 +49,7 @@ fn smoothed(rows: &[HealthRow], k: usize) -> Vec<(f64, f64)> {
 }
 
 /// The numbers of the last tenth, and what is to be said of each.
-pub fn table(judged: &[Judged]) -> Markup {
+pub fn table(judged: &[JudgedNumber]) -> Markup {
     let bounds = |Bound { low, high, .. }: &Bound| format!("{low} to {high}");
     let wrong = judged.iter().filter(|judged| judged.complaint().is_some()).count();
     html! {

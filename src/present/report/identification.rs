@@ -4,7 +4,7 @@ use super::signals;
 use crate::base::error::Result;
 use crate::insight::identify::AXES;
 use crate::insight::identify::document::CheckedLog;
-use crate::insight::identify::estimate::Estimate;
+use crate::insight::identify::estimate::Estimated;
 use crate::insight::identify::result::Identification;
 use crate::present::report::page::{self, number};
 use maud::{Markup, PreEscaped, html};
@@ -55,7 +55,7 @@ fn responses(found: &Identification) -> Markup {
     }
 }
 
-fn interval(estimate: &Estimate, digits: usize) -> String {
+fn interval(estimate: &Estimated, digits: usize) -> String {
     match (estimate.interval(), &estimate.why) {
         (Some([low, high]), _) => format!("{low:.digits$} to {high:.digits$}"),
         (None, Some(why)) => why.clone(),

@@ -1,7 +1,7 @@
 //! A run as one page that needs nothing else.
 
 use super::page;
-pub use super::study::Figure;
+pub use super::study::StudyFigure;
 use crate::race::eval::Report;
 use crate::race::eval::score::Benchmark;
 use crate::race::snapshot::About;
@@ -9,7 +9,7 @@ use maud::{Markup, PreEscaped, html};
 
 /// The page as HTML: what was trained, how it does (and another run beside it), how healthy the training was, and the
 /// figures.
-pub fn page(title: &str, about: &About, flown: &[(&str, &Report)], health: &Markup, figures: &[Figure]) -> String {
+pub fn page(title: &str, about: &About, flown: &[(&str, &Report)], health: &Markup, figures: &[StudyFigure]) -> String {
     const STYLE: &str = "figure{margin:1.5em 0}figcaption{color:#555}";
     let percent = |x: f64| format!("{:.1} %", 100.0 * x);
     let lap =

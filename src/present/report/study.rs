@@ -17,7 +17,7 @@ use maud::{PreEscaped, html};
 const SHOWN: usize = 6;
 
 /// A figure and what it shows.
-pub struct Figure {
+pub struct StudyFigure {
     /// File name without ending.
     pub name: &'static str,
     pub caption: String,
@@ -25,7 +25,7 @@ pub struct Figure {
 }
 
 /// All figures of a study with a finished run.
-pub fn figures(results: &Results, curves: &Curves) -> Result<Vec<Figure>> {
+pub fn figures(results: &Results, curves: &Curves) -> Result<Vec<StudyFigure>> {
     let mut figures = vec![ranked::figure(results)?];
     figures.extend(effects::figure(results)?);
     figures.push(learning::figure(results, curves)?);
@@ -41,7 +41,7 @@ fn best(results: &Results) -> Vec<usize> {
 }
 
 /// The page as HTML.
-pub fn page(results: &Results, figures: &[Figure]) -> String {
+pub fn page(results: &Results, figures: &[StudyFigure]) -> String {
     const STYLE: &str = "figure{margin:1.5em 0}figcaption{color:#555}code{font-size:.9em}td.text{text-align:left}
 .wide{overflow-x:auto}.wide table{font-size:.8em}.wide td{white-space:nowrap}
 .wide td,.wide th{padding:.2em .5em}dt{font-weight:bold}dd{margin:0 0 .5em 1.5em;color:#333}";

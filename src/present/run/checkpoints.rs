@@ -45,7 +45,7 @@ pub struct Checkpoints {
 
 /// What a training goes on from.
 #[derive(Debug, Default)]
-pub struct Found {
+pub struct ResumePoint {
     pub state: Option<RaceState>,
     pub note: Note,
     /// Of each checkpoint that could not be used: which, and why.
@@ -87,15 +87,15 @@ impl Checkpoints {
     }
 
     /// The youngest state that is whole and that `fits`; none where there is none yet.
-    pub fn find(&self, race: &Race, fits: &dyn Fn(&Note) -> Result<(), String>) -> Found {
+    pub fn find(&self, race: &Race, fits: &dyn Fn(&Note) -> Result<(), String>) -> ResumePoint {
         let mut refused = Vec::new();
         for path in files(&self.folder).into_iter().rev() {
             match self.read(&path, race).and_then(|(state, note)| fits(&note).map(|()| (state, note))) {
-                Ok((state, note)) => return Found { state: Some(state), note, refused },
+                Ok((state, note)) => return ResumePoint { state: Some(state), note, refused },
                 Err(why) => refused.push(format!("{}: {why}", path.display())),
             }
         }
-        Found { state: None, note: Note::default(), refused }
+        ResumePoint { state: None, note: Note::default(), refused }
     }
 
     fn read(&self, path: &Path, race: &Race) -> Result<(RaceState, Note), String> {

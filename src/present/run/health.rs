@@ -72,13 +72,13 @@ pub const BOUNDS: [Bound; 6] = [
 
 /// A number judged.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Judged {
+pub struct JudgedNumber {
     pub bound: Bound,
     /// None where the log has no such number.
     pub found: Option<f64>,
 }
 
-impl Judged {
+impl JudgedNumber {
     /// What is wrong with it, if anything.
     pub fn complaint(&self) -> Option<&'static str> {
         let Bound { low, high, below, above, .. } = self.bound;
@@ -91,11 +91,11 @@ impl Judged {
 }
 
 /// Judges the last tenth of a log, whose rows have a number for each of [`BOUNDS`].
-pub fn judge(rows: &[[Option<f64>; BOUNDS.len()]]) -> [Judged; BOUNDS.len()] {
+pub fn judge(rows: &[[Option<f64>; BOUNDS.len()]]) -> [JudgedNumber; BOUNDS.len()] {
     let last = &rows[rows.len() - rows.len().div_ceil(10).min(rows.len())..];
     std::array::from_fn(|i| {
         let values: Vec<f64> = last.iter().filter_map(|row| row[i]).collect();
-        Judged { bound: BOUNDS[i], found: (!values.is_empty()).then(|| stats::mean(&values)) }
+        JudgedNumber { bound: BOUNDS[i], found: (!values.is_empty()).then(|| stats::mean(&values)) }
     })
 }
 
@@ -122,7 +122,7 @@ impl Watched {
         let mut warnings = Vec::new();
         for (i, warned) in self.warned.iter_mut().enumerate().filter(|_| share >= BEGIN) {
             let values: Vec<f64> = rows.iter().filter_map(|row| row[i]).collect();
-            let judged = Judged { bound: BOUNDS[i], found: (!values.is_empty()).then(|| stats::mean(&values)) };
+            let judged = JudgedNumber { bound: BOUNDS[i], found: (!values.is_empty()).then(|| stats::mean(&values)) };
             if let (Some(complaint), Some(found), false) = (judged.complaint(), judged.found, *warned) {
                 *warned = true;
                 let Bound { column, name, .. } = judged.bound;
@@ -149,7 +149,7 @@ mod tests {
         assert!(all(HEALTHY).iter().all(|judged| judged.complaint().is_none()));
         let mut ill = HEALTHY;
         (ill[0], ill[4]) = (50.0, -0.1);
-        let complaints: Vec<_> = all(ill).iter().filter_map(Judged::complaint).collect();
+        let complaints: Vec<_> = all(ill).iter().filter_map(JudgedNumber::complaint).collect();
         assert!(complaints.len() == 2 && complaints[0].contains("runs away") && complaints[1].contains("critic"));
         assert!(judge(&[]).iter().all(|judged| judged.found.is_none()));
 

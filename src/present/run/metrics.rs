@@ -6,7 +6,7 @@ use crate::base::error::Result;
 use crate::base::stats;
 use crate::learn::ppo::train::Iteration;
 use crate::race::env::reward::TERMS;
-use crate::race::env::tally::Tally;
+use crate::race::env::tally::RaceTally;
 use crate::race::env::terminate::CAUSES;
 use std::path::Path;
 use std::time::SystemTime;
@@ -25,7 +25,7 @@ pub struct LogRow {
 
 impl LogRow {
     /// What `iteration` reports. `seconds` is how long it took.
-    pub fn new(iteration: &Iteration<Tally>, seconds: f64) -> Self {
+    pub fn new(iteration: &Iteration<RaceTally>, seconds: f64) -> Self {
         let Iteration { tally, losses, .. } = iteration;
         let per_episode = |sum: f64| sum / tally.episodes();
         let returns: Vec<f64> = tally.returns.iter().copied().map(f64::from).collect();

@@ -1,7 +1,7 @@
 //! Which setting is best, and how sure its seeds make that.
 
 use super::summary::CONFIDENCE;
-use crate::base::rng::{Philox, Sequence, Stream};
+use crate::base::rng::{Philox, RngStream, Sequence};
 use crate::base::stats;
 use rand::RngExt;
 use serde::Serialize;
@@ -54,7 +54,7 @@ pub fn ranking(mut settings: Vec<Scored>) -> Vec<Ranked> {
         // A fixed seed: the same runs always give the same table.
         let rng = Philox::new(0);
         for draw in 0..DRAWS {
-            let mut rng = rng.sequence(Stream::Bootstrap, draw as u32, 0);
+            let mut rng = rng.sequence(RngStream::Bootstrap, draw as u32, 0);
             let means: Vec<RunScore> = settings.iter().map(|setting| drawn(&mut rng, &setting.scores)).collect();
             for (i, place) in places(&means).into_iter().enumerate() {
                 ranks[i].push(place.rank);

@@ -14,11 +14,11 @@ use crate::present::run::{DIVERGED, Run};
 use crate::race::checkpoint::RaceState;
 use crate::race::config::Setup;
 use crate::race::env::Race;
-use crate::race::env::tally::Tally;
+use crate::race::env::tally::RaceTally;
 use crate::race::train::policy_of;
 
 /// Writes down what it observes.
-pub struct Recorder<'a> {
+pub struct TrainingRecorder<'a> {
     pub run: &'a Run,
     pub setup: &'a Setup,
     pub watch: &'a mut dyn TrainingWatch,
@@ -35,7 +35,7 @@ pub struct Recorder<'a> {
     setbacks: Vec<Setback>,
 }
 
-impl<'a> Recorder<'a> {
+impl<'a> TrainingRecorder<'a> {
     /// Goes on from where `note` was made.
     pub fn new(
         run: &'a Run,
@@ -108,8 +108,8 @@ pub fn told(setback: &Setback) -> String {
     }
 }
 
-impl Observer<Race> for Recorder<'_> {
-    fn iteration(&mut self, iteration: &Iteration<Tally>) -> Flow {
+impl Observer<Race> for TrainingRecorder<'_> {
+    fn iteration(&mut self, iteration: &Iteration<RaceTally>) -> Flow {
         if self.failed.is_some() {
             return Flow::Stop;
         }

@@ -3,7 +3,7 @@
 use crate::base::check::BadInput;
 use crate::base::memory::{available, shown};
 use crate::learn::policy::ACTIONS;
-use crate::race::checkpoint::Saved;
+use crate::race::checkpoint::SavedBlock;
 use crate::race::config::Setup;
 use crate::race::env::observe::OBSERVATIONS;
 
@@ -13,7 +13,7 @@ pub fn needed(setup: &Setup) -> u64 {
     let ppo = &setup.config.ppo;
     // Observations, actions; log-probability, reward, value, last value, advantage, return; ends.
     let sample = 4 * (OBSERVATIONS + ACTIONS + 6) + 1;
-    let environment = 2 * size_of::<Saved>() / crate::base::lane::LANES;
+    let environment = 2 * size_of::<SavedBlock>() / crate::base::lane::LANES;
     ppo.samples() as u64 * sample as u64 + (ppo.environments * environment) as u64
 }
 

@@ -19,7 +19,7 @@ pub struct GateFrame<R> {
 
 /// A move across the plane of a gate, seen in the gate's frame.
 #[derive(Clone, Copy, Debug)]
-pub struct Crossing<R: Real> {
+pub struct PlaneCrossing<R: Real> {
     /// Crossed in the gate's direction through the aperture.
     pub passed: R::Mask,
     /// Crossed in the gate's direction outside the aperture.
@@ -67,16 +67,16 @@ impl<L: Lane> GateFrame<L> {
 
 /// Compares two positions in the gate's frame, one step apart, by the straight line between them.
 #[inline(always)]
-pub fn crossing<R: Real>(before: [R; 3], after: [R; 3], radius: R) -> Crossing<R> {
+pub fn crossing<R: Real>(before: [R; 3], after: [R; 3], radius: R) -> PlaneCrossing<R> {
     let crossed = before[0].lt(R::zero()) & R::zero().le(after[0]);
     if !crossed.any() {
-        return Crossing { passed: crossed, missed: crossed, fraction: R::zero() };
+        return PlaneCrossing { passed: crossed, missed: crossed, fraction: R::zero() };
     }
     let fraction = before[0] / R::select(crossed, before[0] - after[0], R::one());
     let y = fraction.mul_add(after[1] - before[1], before[1]);
     let z = fraction.mul_add(after[2] - before[2], before[2]);
     let inside = y.mul_add(y, z * z).le(radius * radius);
-    Crossing { passed: crossed & inside, missed: crossed & !inside, fraction }
+    PlaneCrossing { passed: crossed & inside, missed: crossed & !inside, fraction }
 }
 
 /// The frames of all gates of `track`; physical gates with the aperture `physical_radius` where it is given.

@@ -3,17 +3,17 @@
 use super::observe::OBSERVATIONS;
 use super::reset::{self, StartPlace};
 use super::reward::TERMS;
-use super::tally::Tally;
+use super::tally::RaceTally;
 use super::{Block, Race, lanes};
 use crate::base::lane::{LANES, Lane, Lane32, Portable, Real};
-use crate::base::rng::Stream;
+use crate::base::rng::RngStream;
 use crate::learn::ppo::{Environment, Step};
 use rand::RngExt;
 
 impl Environment for Race {
     type Block<L: Lane32> = Block<L>;
     type Saved = Block<Portable<f32>>;
-    type Tally = Tally;
+    type Tally = RaceTally;
 
     fn observations(&self) -> usize {
         OBSERVATIONS
@@ -24,7 +24,7 @@ impl Environment for Race {
         for lane in 0..LANES {
             self.restart(&mut block, lane);
             // The first episodes are of different ages, so that the horizon does not end them all at once.
-            let mut rng = self.rng.sequence(Stream::Reset, first + lane as u32, u32::MAX);
+            let mut rng = self.rng.sequence(RngStream::Reset, first + lane as u32, u32::MAX);
             block.clock.set(lane, rng.random_range(0..self.config.horizon_steps) as f32);
         }
         block
@@ -36,7 +36,7 @@ impl Environment for Race {
     }
 
     #[inline(always)]
-    fn save<L: Lane32>(&self, block: &Block<L>, tally: &mut Tally) -> Self::Saved {
+    fn save<L: Lane32>(&self, block: &Block<L>, tally: &mut RaceTally) -> Self::Saved {
         for (sum, term) in tally.terms.iter_mut().zip(block.terms) {
             *sum += f64::from(term.sum());
         }
@@ -51,7 +51,7 @@ impl Environment for Race {
     }
 
     #[inline(always)]
-    fn step<L: Lane32>(&self, block: &mut Block<L>, action: [L; 4], tally: &mut Tally) -> Step<L> {
+    fn step<L: Lane32>(&self, block: &mut Block<L>, action: [L; 4], tally: &mut RaceTally) -> Step<L> {
         let outcome = Block::step(block, self, action);
         tally.steps += LANES as f64;
         tally.gates += f64::from(outcome.passed.count_ones());
@@ -70,7 +70,7 @@ impl Environment for Race {
     }
 
     #[inline(always)]
-    fn reset<L: Lane32>(&self, block: &mut Block<L>, ended: u16, tally: &mut Tally) {
+    fn reset<L: Lane32>(&self, block: &mut Block<L>, ended: u16, tally: &mut RaceTally) {
         for lane in lanes(u32::from(ended)) {
             tally.returns.push(block.gathered.get(lane));
             tally.episode_gates += f64::from(block.passed[lane]);
@@ -88,7 +88,7 @@ impl Environment for Race {
 
 impl Race {
     fn restart<L: Lane32>(&self, block: &mut Block<L>, lane: usize) {
-        let mut rng = self.rng.sequence(Stream::Reset, block.first + lane as u32, block.step);
+        let mut rng = self.rng.sequence(RngStream::Reset, block.first + lane as u32, block.step);
         let start = reset::draw(self, &mut rng, StartPlace::Mixed, None);
         block.begin(self, lane, &start);
     }

@@ -2,7 +2,7 @@
 
 use crate::base::check::{Check, Invalid};
 use crate::base::lane::{Lane32, build, each};
-use crate::base::rng::{Philox, Stream, coarse_normals};
+use crate::base::rng::{Philox, RngStream, coarse_normals};
 use serde::{Deserialize, Serialize};
 
 /// Standard deviations, drawn anew each step; 0 switches one off. More makes a policy more careful and slower.
@@ -60,7 +60,7 @@ fn scaled<L: Lane32, const N: usize>(x: [L; N], sd: f64) -> [L; N] {
 /// The estimate's error in `environments` at `step`.
 #[inline(always)]
 pub fn of_observation<L: Lane32>(c: &NoiseConfig, rng: &Philox, environments: L::Bits, step: u32) -> Noise<L> {
-    let w: [[L::Bits; 4]; 2] = build!(|i| rng.noise(Stream::Noise, environments, step, i as u32));
+    let w: [[L::Bits; 4]; 2] = build!(|i| rng.noise(RngStream::Noise, environments, step, i as u32));
     // 13 numbers from 7 words.
     let n: [(L, L); 7] = build!(|i| coarse_normals(w[i / 4][i % 4]));
     Noise {
@@ -75,7 +75,7 @@ pub fn of_observation<L: Lane32>(c: &NoiseConfig, rng: &Philox, environments: L:
 /// What is added to the action in `environments` at `step`.
 #[inline(always)]
 pub fn of_action<L: Lane32>(c: &NoiseConfig, rng: &Philox, environments: L::Bits, step: u32) -> [L; 4] {
-    let w = rng.noise(Stream::Noise, environments, step, 2);
+    let w = rng.noise(RngStream::Noise, environments, step, 2);
     let ((a, b), (c0, d)) = (coarse_normals::<L>(w[0]), coarse_normals::<L>(w[1]));
     scaled([a, b, c0, d], c.action)
 }

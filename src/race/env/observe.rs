@@ -134,7 +134,7 @@ const SCALES: [(f32, f32); OBSERVATIONS] = {
 };
 
 /// What an observation is made of, of 16 vehicles.
-pub struct Seen<'a, L> {
+pub struct ObservationInputs<'a, L> {
     /// The target gates, and the positions in their frames, m.
     pub gate: &'a GateFrame<L>,
     pub in_gate: [L; 3],
@@ -155,7 +155,7 @@ pub struct Seen<'a, L> {
 /// to estimate. `voltage_scale` is the offset and scale of the voltage.
 #[inline(always)]
 pub fn observe<L: Lane<Elem = f32>>(
-    seen: &Seen<L>,
+    seen: &ObservationInputs<L>,
     noise: Option<&Noise<L>>,
     voltage_scale: [f64; 2],
     out: &mut [f32],

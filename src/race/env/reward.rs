@@ -78,7 +78,7 @@ macro_rules! list {
 list!(progress, gate, time, altitude, timeout, facing, action_change);
 
 /// What one step brought, seen by the reward.
-pub struct Inputs<L: Lane> {
+pub struct RewardInputs<L: Lane> {
     /// Distance to the target gate's centre before and after the step, m.
     pub distance: [L; 2],
     /// Lanes that passed their gate, and lanes that ran into the time-out.
@@ -94,7 +94,7 @@ pub struct Inputs<L: Lane> {
 
 /// The terms of one step.
 #[inline(always)]
-pub fn terms<L: Lane>(c: &RewardConfig, s: &Inputs<L>) -> Terms<L> {
+pub fn terms<L: Lane>(c: &RewardConfig, s: &RewardInputs<L>) -> Terms<L> {
     let zero = L::zero();
     let low = (L::of(c.altitude_m) - s.height).max(zero);
     let near = (s.distance[1] * L::of(-1.0 / c.facing_m)).exp();

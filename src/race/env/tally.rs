@@ -6,7 +6,7 @@ use crate::learn::ppo;
 
 /// Counts and sums over environment steps.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tally {
+pub struct RaceTally {
     pub steps: f64,
     /// Sum of each reward term.
     pub terms: [f64; TERMS.len()],
@@ -22,14 +22,14 @@ pub struct Tally {
     pub episode_steps: f64,
 }
 
-impl Tally {
+impl RaceTally {
     /// Episodes ended.
     pub fn episodes(&self) -> f64 {
         self.returns.len() as f64
     }
 }
 
-impl ppo::Tally for Tally {
+impl ppo::Tally for RaceTally {
     fn merge(&mut self, other: &Self) {
         self.steps += other.steps;
         self.terms.iter_mut().zip(other.terms).for_each(|(a, b)| *a += b);

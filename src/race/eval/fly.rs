@@ -1,7 +1,7 @@
 //! Flying a policy's deterministic mean, many agents side by side.
 
 use crate::base::lane::{Kernel, LANES, Lane32, Level, Mask, build, dispatch, sum_of_squares};
-use crate::base::rng::{Sequence, Stream};
+use crate::base::rng::{RngStream, Sequence};
 use crate::learn::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use crate::learn::policy::ACTIONS;
 use crate::model::dynamics::Factors;
@@ -17,7 +17,7 @@ pub const SATURATED: f64 = 0.95;
 
 /// One agent's flight, until it completed a lap, failed, or ran out of steps.
 #[derive(Clone, Debug, Default)]
-pub struct Flight {
+pub struct EvaluatedFlight {
     /// Index of the first target gate.
     pub first_gate: usize,
     /// When each gate was passed, in order, s from the start, interpolated within the step.
@@ -34,7 +34,7 @@ pub struct Flight {
     pub commands: u32,
 }
 
-impl Flight {
+impl EvaluatedFlight {
     /// Time from the first crossing of the first gate to the next, on a lap of `gates` gates.
     pub fn lap_time(&self, gates: usize) -> Option<f64> {
         self.passes.get(gates).map(|end| end - self.passes[0])
@@ -66,7 +66,7 @@ pub struct TraceStep {
 /// All agents of one evaluation.
 #[derive(Clone, Debug)]
 pub struct Flights {
-    pub flights: Vec<Flight>,
+    pub flights: Vec<EvaluatedFlight>,
     /// Agent 0, the nominal vehicle, step by step.
     pub trace: Vec<TraceStep>,
 }
@@ -145,14 +145,14 @@ impl Kernel for Fly<'_> {
     #[inline(always)]
     fn run<L: Lane32>(self) -> Flights {
         let Fly { race, network, place, fleet, first, agents, max_steps } = self;
-        let mut out = Flights { flights: vec![Flight::default(); TILE_SAMPLES], trace: Vec::new() };
+        let mut out = Flights { flights: vec![EvaluatedFlight::default(); TILE_SAMPLES], trace: Vec::new() };
         let mut blocks: [Block<L>; TILE_BLOCKS] = std::array::from_fn(|b| race.empty_block((first + b * LANES) as u32));
         // Bits of lanes still flying; padding lanes never start.
         let mut alive = [0u32; TILE_BLOCKS];
         for (b, block) in blocks.iter_mut().enumerate() {
             for lane in 0..LANES {
                 let agent = first + b * LANES + lane;
-                let mut rng = race.rng.sequence(Stream::Evaluation, agent as u32, 0);
+                let mut rng = race.rng.sequence(RngStream::Evaluation, agent as u32, 0);
                 let start = fleet.draw(race, &mut rng, place, agent);
                 block.begin(race, lane, &start);
                 out.flights[b * LANES + lane].first_gate = start.target;
@@ -203,7 +203,13 @@ impl Kernel for Fly<'_> {
 
 /// Adds one step's commands to the flights that are `alive`.
 #[inline(always)]
-fn judge<L: Lane32>(flights: &mut [Flight], alive: u32, action: [L; ACTIONS], before: [L; ACTIONS], step: u32) {
+fn judge<L: Lane32>(
+    flights: &mut [EvaluatedFlight],
+    alive: u32,
+    action: [L; ACTIONS],
+    before: [L; ACTIONS],
+    step: u32,
+) {
     let mut change = L::zero();
     let mut saturated = L::zero();
     for k in 0..ACTIONS {

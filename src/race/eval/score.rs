@@ -1,6 +1,6 @@
 //! What flights are worth: the metrics of an evaluation, each defined here and nowhere else.
 
-use super::fly::{Flight, Flights};
+use super::fly::{EvaluatedFlight, Flights};
 use crate::base::stats;
 use crate::model::track::Track;
 use crate::race::env::terminate::CAUSES;
@@ -67,7 +67,7 @@ pub fn score(track: &Track, all: &Flights) -> Benchmark {
         *failures_by_gate.entry(track.gate_label(gate)).or_default().entry(cause.into()).or_default() += 1;
     }
     let share = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
-    let total = |f: fn(&Flight) -> f64| flights.iter().map(f).sum::<f64>();
+    let total = |f: fn(&EvaluatedFlight) -> f64| flights.iter().map(f).sum::<f64>();
     Benchmark {
         agents,
         lap_completion: share(laps.len() as f64, agents as f64),
@@ -95,7 +95,7 @@ pub fn score(track: &Track, all: &Flights) -> Benchmark {
 }
 
 /// Whether the flight passed gate `last` after gate `first` (or as the same gate).
-fn passed_section(flight: &Flight, first: usize, last: usize, gates: usize) -> bool {
+fn passed_section(flight: &EvaluatedFlight, first: usize, last: usize, gates: usize) -> bool {
     let order = |gate: usize| (gate + gates - flight.first_gate) % gates;
     let entered = order(first);
     let length = (last + gates - first) % gates;

@@ -140,7 +140,7 @@ impl System {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::rng::{Philox, Stream};
+    use crate::base::rng::{Philox, RngStream};
     use rand::RngExt;
     use rand_distr::StandardNormal;
 
@@ -148,7 +148,7 @@ mod tests {
     fn solves_what_a_dense_solver_solves() {
         let (inner, border) = (30, 5);
         let n = inner + border;
-        let mut rng = Philox::new(1).sequence(Stream::Weights, 0, 0);
+        let mut rng = Philox::new(1).sequence(RngStream::Weights, 0, 0);
         // Rows of other lengths, and unknowns in another order than the matrix's.
         let reach = |i: usize| if i % 7 == 6 { 14 } else { 4 };
         let first: Vec<usize> = (0..inner).map(|i: usize| i.saturating_sub(reach(i))).collect();

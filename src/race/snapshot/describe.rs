@@ -8,7 +8,7 @@
 mod course;
 mod model;
 
-use super::self_test::{self, Rows, SETPOINT_TOLERANCE, Step, TOLERANCE};
+use super::self_test::{self, FlownStep, SETPOINT_TOLERANCE, SelfTestRows, TOLERANCE};
 use super::{About, seen};
 use crate::learn::nn::{HIDDEN, Network};
 use crate::learn::policy::ACTIONS;
@@ -24,7 +24,7 @@ pub struct Shown<'a> {
     /// Least and greatest of every entry of the observation.
     pub range: [[f32; OBSERVATIONS]; 2],
     /// The steps of the self-test, and the lap of the flight that they are from, s.
-    pub steps: &'a [Step],
+    pub steps: &'a [FlownStep],
     pub lap_s: Option<f64>,
 }
 
@@ -157,7 +157,7 @@ fn filter(around: &Surroundings, time_constant_s: [f64; ACTIONS]) -> Value {
 }
 
 fn self_test(shown: &Shown) -> Value {
-    let rows = Rows::of(shown.steps);
+    let rows = SelfTestRows::of(shown.steps);
     json!({
         "steps": rows.state.len(),
         "switches": self_test::switches(shown.steps).iter().filter(|&&step| step > 0).count(),

@@ -10,7 +10,7 @@ use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
 use crate::race::act::act;
 use crate::race::env::observe::OBSERVATIONS;
-use crate::race::onboard::{AT_START, Answer, Crossing, Estimate, Memory, Onboard, Surroundings};
+use crate::race::onboard::{AT_START, Crossing, Decision, Estimate, Memory, Onboard, Surroundings};
 
 /// Steps kept where that is enough for two switches of the target gate, and at most.
 pub const LEAST: usize = 64;
@@ -27,21 +27,21 @@ pub const SETPOINT_TOLERANCE: [f64; SETPOINT] = [2e-3, 2e-3, 2e-3, 1e-4, 5e-3, 5
 
 /// A step of a flight: what was known, and what was answered.
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
+pub struct FlownStep {
     pub estimate: Estimate,
-    pub answer: Answer,
+    pub answer: Decision,
 }
 
 /// The nominal vehicle's flight from the pad with a full battery, undisturbed.
 #[derive(Clone, Debug)]
-pub struct Flight {
-    pub steps: Vec<Step>,
+pub struct NominalFlight {
+    pub steps: Vec<FlownStep>,
     /// From the first crossing of the first gate to its next, s, where it came so far.
     pub lap_s: Option<f64>,
 }
 
 /// Flies until a lap is complete, a gate is missed, the volume is left, or `most` steps are over.
-pub fn fly(network: &Network<f32>, track: &Track, vehicle: &Vehicle, most: usize) -> Flight {
+pub fn fly(network: &Network<f32>, track: &Track, vehicle: &Vehicle, most: usize) -> NominalFlight {
     let around = Surroundings::of(track, vehicle);
     let mut onboard = Onboard { network, around: &around, memory: Memory::before(0, AT_START) };
     let (sin, cos) = (0.5 * track.start.heading_rad()).sin_cos();
@@ -66,20 +66,20 @@ pub fn fly(network: &Network<f32>, track: &Track, vehicle: &Vehicle, most: usize
         if lost || passes.len() > track.gates.len() {
             break;
         }
-        steps.push(Step { estimate, answer });
+        steps.push(FlownStep { estimate, answer });
         craft.step(answer.action);
     }
-    Flight { steps, lap_s: passes.get(track.gates.len()).map(|end| end - passes[0]) }
+    NominalFlight { steps, lap_s: passes.get(track.gates.len()).map(|end| end - passes[0]) }
 }
 
 /// Steps at which the target gate was switched.
-pub fn switches(steps: &[Step]) -> Vec<usize> {
+pub fn switches(steps: &[FlownStep]) -> Vec<usize> {
     (0..steps.len()).filter(|&i| steps[i].answer.crossing == Crossing::Passed).collect()
 }
 
 /// The part of a flight that is kept: around the two switches that follow each other fastest, or from its beginning
 /// where there are no two.
-pub fn window(steps: &[Step]) -> &[Step] {
+pub fn window(steps: &[FlownStep]) -> &[FlownStep] {
     let all = switches(steps);
     let pairs = all.windows(2).map(|pair| (pair[0], pair[1]));
     let closest = pairs.min_by_key(|(first, second)| second - first);
@@ -105,7 +105,7 @@ pub fn estimate(row: &[f32; STATE]) -> Estimate {
 }
 
 /// The numbers of a setpoint, in the order of the columns.
-pub fn setpoint_row(answer: &Answer) -> [f32; SETPOINT] {
+pub fn setpoint_row(answer: &Decision) -> [f32; SETPOINT] {
     let s = &answer.setpoint;
     let [x, y, z] = s.body_rates;
     [x, y, z, s.throttle, s.thrust_n, s.thrust_to_weight]
@@ -113,7 +113,7 @@ pub fn setpoint_row(answer: &Answer) -> [f32; SETPOINT] {
 
 /// What a file holds of the window, one row a step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rows {
+pub struct SelfTestRows {
     pub state: Vec<[f32; STATE]>,
     pub target: Vec<i32>,
     pub observation: Vec<[f32; OBSERVATIONS]>,
@@ -121,9 +121,9 @@ pub struct Rows {
     pub setpoint: Vec<[f32; SETPOINT]>,
 }
 
-impl Rows {
+impl SelfTestRows {
     /// Of these steps.
-    pub fn of(steps: &[Step]) -> Self {
+    pub fn of(steps: &[FlownStep]) -> Self {
         Self {
             state: steps.iter().map(|s| state_row(&s.estimate)).collect(),
             target: steps.iter().map(|s| s.answer.target as i32).collect(),

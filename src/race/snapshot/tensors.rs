@@ -1,15 +1,15 @@
 //! The network as named tensors.
 
-use super::self_test::{Rows, SETPOINT, STATE};
+use super::self_test::{SETPOINT, STATE, SelfTestRows};
 use crate::base::check::Invalid;
-use crate::learn::nn::mlp::Shape;
+use crate::learn::nn::mlp::Layout;
 use crate::learn::nn::{HIDDEN, Layer, Network};
 use crate::learn::policy::ACTIONS;
 use crate::race::env::observe::OBSERVATIONS;
 use safetensors::tensor::{Dtype, SafeTensors};
 
 /// The networks by name.
-fn networks(network: &Network<f32>) -> [(&'static str, Shape); 2] {
+fn networks(network: &Network<f32>) -> [(&'static str, Layout); 2] {
     [("actor", network.actor.clone()), ("critic", network.critic.clone())]
 }
 
@@ -54,7 +54,7 @@ pub fn of(network: &Network<f32>) -> Vec<Tensor> {
 }
 
 /// The self-test's.
-pub fn of_rows(rows: &Rows) -> Vec<Tensor> {
+pub fn of_rows(rows: &SelfTestRows) -> Vec<Tensor> {
     let steps = rows.state.len();
     let target = rows.target.iter().flat_map(|target| target.to_le_bytes()).collect();
     vec![
@@ -73,12 +73,12 @@ const ANSWERS: &str = "self_test.action";
 const SETPOINTS: &str = "self_test.setpoint";
 
 /// What [`of_rows`] was made of.
-pub fn read_rows(file: &SafeTensors) -> Result<Rows, Invalid> {
+pub fn read_rows(file: &SafeTensors) -> Result<SelfTestRows, Invalid> {
     let targets = file.tensor(TARGETS).map_err(|error| Invalid::new(TARGETS, error, "", ""))?;
     let fits = targets.dtype() == Dtype::I32 && targets.shape().len() == 1;
     Invalid::unless(fits, TARGETS, format!("{:?} of shape {:?}", targets.dtype(), targets.shape()), "", "")?;
     let steps = targets.shape()[0];
-    Ok(Rows {
+    Ok(SelfTestRows {
         state: read_table(file, STATES, steps)?,
         target: targets.data().as_chunks().0.iter().map(|&word| i32::from_le_bytes(word)).collect(),
         observation: read_table(file, SEEN, steps)?,

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 /// A velocity for some time.
 #[derive(Debug)]
-pub struct Course {
+pub struct VelocityLeg {
     speed: f64,
     vertical: f64,
     turn: f64,
@@ -21,19 +21,19 @@ pub struct Course {
 /// Error in height to vertical speed, 1/s.
 const HEIGHT_GAIN: f64 = 0.8;
 
-impl Course {
+impl VelocityLeg {
     /// `speed` over ground and `vertical` (m/s), turning left at `turn` (rad/s), for `seconds`.
     pub fn new(speed: f64, vertical: f64, turn: f64, seconds: f64) -> Self {
-        Course { speed, vertical, turn, seconds, travel: 0.0, heading: 0.0, height: None }
+        VelocityLeg { speed, vertical, turn, seconds, travel: 0.0, heading: 0.0, height: None }
     }
 
     /// The same, beginning in the direction `travel` with the nose at `heading`, rad.
     pub fn along(self, travel: f64, heading: f64) -> Self {
-        Course { travel, heading, ..self }
+        VelocityLeg { travel, heading, ..self }
     }
 }
 
-impl Script for Course {
+impl Script for VelocityLeg {
     fn demand(&mut self, now: &Now, _: &mut Sequence) -> Option<Demand> {
         if now.time > self.seconds {
             return None;

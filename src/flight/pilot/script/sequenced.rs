@@ -2,7 +2,7 @@
 
 use super::{Now, Script};
 use crate::base::rng::Sequence;
-use crate::flight::pilot::Limits;
+use crate::flight::pilot::PilotLimits;
 use crate::flight::pilot::cascade::Demand;
 use nalgebra::Vector3;
 use rand::seq::SliceRandom;
@@ -34,7 +34,7 @@ impl Sequenced {
     }
 
     /// Rate doublets of three sizes in random order, beginning to the side of `sign`.
-    pub fn doublets(axis: usize, sign: f64, limits: &Limits, rng: &mut Sequence) -> Self {
+    pub fn doublets(axis: usize, sign: f64, limits: &PilotLimits, rng: &mut Sequence) -> Self {
         let mut sizes = SIZES;
         sizes.shuffle(rng);
         let segments = sizes.iter().flat_map(|size| {

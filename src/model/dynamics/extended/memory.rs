@@ -8,7 +8,7 @@ pub const LINE: usize = 14;
 
 /// What lies between two steps besides the state.
 #[derive(Clone, Copy, Debug)]
-pub struct Memory<R> {
+pub struct EffectMemory<R> {
     /// The last commands, newest first.
     pub line: [[R; 4]; LINE],
     /// Time since the newest one, s.
@@ -19,18 +19,18 @@ pub struct Memory<R> {
     pub polarisation: R,
 }
 
-impl Memory<f64> {
+impl EffectMemory<f64> {
     /// Before the first step of a flight that begins with `command`, which was held for long without load.
     pub fn before(command: [f64; 4]) -> Self {
-        Memory { line: [command; LINE], phase: CONTROL_S, slope: [0.0; 3], polarisation: 0.0 }
+        EffectMemory { line: [command; LINE], phase: CONTROL_S, slope: [0.0; 3], polarisation: 0.0 }
     }
 }
 
-impl<R: Copy> Memory<R> {
+impl<R: Copy> EffectMemory<R> {
     /// Converts every number, in a fixed order.
     #[inline(always)]
-    pub fn map<S>(&self, mut f: impl FnMut(R) -> S) -> Memory<S> {
-        Memory {
+    pub fn map<S>(&self, mut f: impl FnMut(R) -> S) -> EffectMemory<S> {
+        EffectMemory {
             line: self.line.map(|command| command.map(&mut f)),
             phase: f(self.phase),
             slope: self.slope.map(&mut f),
@@ -39,9 +39,9 @@ impl<R: Copy> Memory<R> {
     }
 }
 
-impl<L: Lane> Memory<L> {
+impl<L: Lane> EffectMemory<L> {
     /// Replaces the memory of one lane.
-    pub fn set_lane(&mut self, lane: usize, new: &Memory<L::Elem>) {
+    pub fn set_lane(&mut self, lane: usize, new: &EffectMemory<L::Elem>) {
         set_lanes(self.line.as_flattened_mut(), lane, new.line.as_flattened());
         self.phase.set(lane, new.phase);
         set_lanes(&mut self.slope, lane, &new.slope);
@@ -49,7 +49,7 @@ impl<L: Lane> Memory<L> {
     }
 }
 
-impl<R: Real> Memory<R> {
+impl<R: Real> EffectMemory<R> {
     /// Takes in the held command `action`, of which roll, pitch, yaw and thrust arrive `delay` seconds late. What is
     /// never late needs no memory, and is not remembered.
     #[inline(always)]

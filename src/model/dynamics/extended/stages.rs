@@ -1,12 +1,12 @@
 //! The stages between a command and the motion, each open to every effect that is present. Simulator and diagnosis
 //! compose the same stages; only where the inputs come from differs.
 
-use super::{Extended, Memory};
+use super::{EffectMemory, Extended};
 use crate::base::lane::{Real, build, each};
 use crate::model::attitude::{body_axes, dot};
 use crate::model::dynamics::{State, drag, response};
 use crate::model::effects::{
-    self, Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, RelativeWind, Setpoint, ThrustInput,
+    self, Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, CommandSetpoint, RelativeWind, ThrustInput,
 };
 use crate::model::thrust;
 
@@ -49,7 +49,8 @@ pub fn actuator_response<R: Real>(
     effects::actuator(values, &mut actuator);
     let rates = build!(|i| command[i] * p.compact.max_rate[i]);
     let throttle = throttle(command[3]);
-    let mut setpoint = Setpoint { command: sent, throttle, rates, tau: actuator.tau, max_rate: p.compact.max_rate };
+    let mut setpoint =
+        CommandSetpoint { command: sent, throttle, rates, tau: actuator.tau, max_rate: p.compact.max_rate };
     effects::setpoint(values, &mut setpoint);
     let falling = setpoint.command[3].lt(command[3]);
     let tau =
@@ -120,7 +121,7 @@ pub struct ForceInputs<R> {
 impl<R: Real> ForceInputs<R> {
     /// Those of a state.
     #[inline(always)]
-    fn of(s: &State<R>, p: &Extended<R>, memory: &Memory<R>) -> Self {
+    fn of(s: &State<R>, p: &Extended<R>, memory: &EffectMemory<R>) -> Self {
         let axes = body_axes(s.attitude);
         let velocity = build!(|i| dot(axes[i], s.velocity));
         let mut rate_error = R::zero();
@@ -174,12 +175,12 @@ pub fn force<R: Real>(p: &Extended<R>, at: &ForceInputs<R>) -> [R; 3] {
 
 /// Voltage at the battery's terminals under the present load, V.
 #[inline(always)]
-pub fn loaded<R: Real>(s: &State<R>, p: &Extended<R>, memory: &Memory<R>) -> R {
+pub fn loaded<R: Real>(s: &State<R>, p: &Extended<R>, memory: &EffectMemory<R>) -> R {
     terminal(p, s.voltage, s.command[3], memory.polarisation, R::zero()).0
 }
 
 /// Thrust, drag and what effects add, over the mass, body frame, m/s2.
 #[inline(always)]
-pub fn specific_force<R: Real>(s: &State<R>, p: &Extended<R>, memory: &Memory<R>) -> [R; 3] {
+pub fn specific_force<R: Real>(s: &State<R>, p: &Extended<R>, memory: &EffectMemory<R>) -> [R; 3] {
     force(p, &ForceInputs::of(s, p, memory))
 }

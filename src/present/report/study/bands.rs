@@ -2,7 +2,7 @@
 
 use super::learning::axis;
 use super::marks::{self, Key};
-use super::{Figure, best};
+use super::{StudyFigure, best};
 use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, Area};
@@ -15,7 +15,7 @@ use plotters::prelude::*;
 const PANEL: u32 = 380;
 
 /// Of the share of agents that complete a lap.
-pub fn completion(results: &Results, curves: &Curves) -> Result<Figure> {
+pub fn completion(results: &Results, curves: &Curves) -> Result<StudyFigure> {
     let what = What { name: "seed-bands-completion", axis: "fixed starts that lap, %", of: |curve| &curve.completion };
     let caption = "Fixed-start lap completion of the snapshots: median and quartiles over the seeds of each of the \
 best settings. Dashed: 95 %, ready for deployment.";
@@ -23,7 +23,7 @@ best settings. Dashed: 95 %, ready for deployment.";
 }
 
 /// Of what was gathered while training.
-pub fn learning(results: &Results, curves: &Curves) -> Result<Figure> {
+pub fn learning(results: &Results, curves: &Curves) -> Result<StudyFigure> {
     let what = What { name: "seed-bands-learning", axis: curves.what, of: |curve| &curve.learning };
     let caption = format!(
         "Learning curves: median and quartiles over the seeds of each of the best settings. Shapes: where the median \
@@ -46,7 +46,7 @@ fn draw(
     range: Option<std::ops::Range<f64>>,
     sections: bool,
     caption: String,
-) -> Result<Figure> {
+) -> Result<StudyFigure> {
     let bands = |over| best(results).into_iter().filter_map(move |setting| band(curves, setting, over, what.of));
     let (minutes, steps): (Vec<Band>, Vec<Band>) = (bands(Over::Minutes).collect(), bands(Over::Steps).collect());
     let name = |(i, band): (usize, &Band)| {
@@ -68,7 +68,7 @@ fn draw(
         panel(&above, &minutes, [axis(Over::Minutes), what.axis], y.clone(), sections)?;
         panel(&below, &steps, [axis(Over::Steps), what.axis], y.clone(), sections)
     })?;
-    Ok(Figure { name: what.name, caption, svg })
+    Ok(StudyFigure { name: what.name, caption, svg })
 }
 
 fn panel(area: &Area, bands: &[Band], axes: [&str; 2], y: std::ops::Range<f64>, sections: bool) -> Result<()> {

@@ -1,6 +1,6 @@
 //! What each axis does to smoothness, saturation, lap time and success: means over all else.
 
-use super::Figure;
+use super::StudyFigure;
 use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, Area, TEXT};
@@ -19,7 +19,7 @@ const ROW: u32 = 200;
 const HEAD: i32 = 30;
 
 /// A row each axis, a column each metric; none of a study with a single axis.
-pub fn figure(results: &Results) -> Result<Option<Figure>> {
+pub fn figure(results: &Results) -> Result<Option<StudyFigure>> {
     let axes = &results.axes;
     if axes.is_empty() {
         return Ok(None);
@@ -46,7 +46,7 @@ pub fn figure(results: &Results) -> Result<Option<Figure>> {
     })?;
     let caption = "Each value of each axis: mean over all other axes and seeds, with its 95 % interval. The scale of a \
 column is the same in all rows.";
-    Ok(Some(Figure { name: "axes", caption: caption.into(), svg }))
+    Ok(Some(StudyFigure { name: "axes", caption: caption.into(), svg }))
 }
 
 fn panel(

@@ -1,7 +1,7 @@
 //! Learning curves of all runs, with sections and chosen snapshots marked (the paper's Figure 3).
 
 use super::marks::{self, Key};
-use super::{Figure, best};
+use super::{StudyFigure, best};
 use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, Area, TEXT};
@@ -16,7 +16,7 @@ const OTHERS: RGBColor = RGBColor(210, 210, 210);
 const DARKER: RGBColor = RGBColor(165, 165, 165);
 
 /// Over time above, over steps below.
-pub fn figure(results: &Results, curves: &Curves) -> Result<Figure> {
+pub fn figure(results: &Results, curves: &Curves) -> Result<StudyFigure> {
     // Of each of the best settings the best run; of equals that with the lowest seed.
     let of = |setting: usize| {
         let runs = curves.runs.iter().filter(|curve| curve.setting == setting);
@@ -47,7 +47,7 @@ the first snapshot with which {share:.0} % of random-start agents pass a section
 fixed-start lap completion.",
         curves.runs.len()
     );
-    Ok(Figure { name: "learning-curves", caption, svg })
+    Ok(StudyFigure { name: "learning-curves", caption, svg })
 }
 
 fn panel(area: &Area, curves: &Curves, shown: &[&Curve], over: Over) -> Result<()> {

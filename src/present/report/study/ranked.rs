@@ -1,6 +1,6 @@
 //! The settings in order: each run, the mean and its interval.
 
-use super::Figure;
+use super::StudyFigure;
 use crate::base::error::Result;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, TEXT};
@@ -15,7 +15,7 @@ const ROW: u32 = 24;
 const LETTER: u32 = 8;
 
 /// Fixed-start lap completion, a row each setting.
-pub fn figure(results: &Results) -> Result<Figure> {
+pub fn figure(results: &Results) -> Result<StudyFigure> {
     let n = results.ranking.len();
     let longest = results.ranking.iter().map(|place| place.setting.len() + 4).max().unwrap_or_default() as u32;
     let left = (LETTER * longest).clamp(80, 460);
@@ -69,5 +69,5 @@ pub fn figure(results: &Results) -> Result<Figure> {
     let caption = "Settings by mean fixed-start lap completion of their runs' best snapshots (bars, with the 95 % \
 interval of the mean where there are several seeds); dots are runs. Dashed: 95 %, ready for deployment. To the right: \
 how often a setting is the best, and where it ranks, when the seeds are drawn again.";
-    Ok(Figure { name: "ranking", caption: caption.into(), svg })
+    Ok(StudyFigure { name: "ranking", caption: caption.into(), svg })
 }
