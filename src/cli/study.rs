@@ -2,6 +2,7 @@
 
 mod child;
 mod display;
+mod slurm;
 mod text;
 mod work;
 
@@ -14,6 +15,7 @@ use crate::present::study::folder::{Folder, RunState};
 use crate::present::study::plan::{Planned, StudyBudget, plan};
 use crate::present::study::shard::Shard;
 use crate::present::study::{Study, tables};
+use slurm::{SlurmArgs, Tasks};
 use std::path::{Path, PathBuf};
 use work::{Work, WorkEnd};
 
@@ -51,6 +53,8 @@ pub struct Args {
     /// New file for all tables as JSON; the study's folder has the same
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    slurm: SlurmArgs,
 }
 
 const HELP: &str = "A study is a file with a grid. This one makes six runs:
@@ -66,12 +70,14 @@ cpu_configurations, seeds_paper, seeds, regularisation, regularisation_factorial
 
 Every setting is checked before the first run begins. After any interruption the same command goes on, without \
 repeating a finished run; with --steps it ends in the same tables. Ctrl-C ends the runs under way, which are repeated \
-then.
+then. --slurm submits the runs that are still to do as an array job; called again when that is over, those that failed. \
+--table says how far it is.
 
 Examples:
   racer study mine.toml
   racer study cpu_configurations --minutes 2 --jobs 2 --out runs/cpu
   racer study seeds --shard 2/4 --out /shared/seeds
+  racer study seeds --out /shared/seeds --slurm --partition long --threads 8
   racer report runs/cpu";
 
 /// Plans, trains what is missing, writes and prints the tables.
@@ -89,6 +95,9 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     }
     let json = args.json.as_deref().map(Reserved::new).transpose()?;
     folder.begin(&planned.plan, document.text())?;
+    if args.slurm.asked() {
+        return submit(args, &out, &planned, &folder, threads);
+    }
     let ended = if args.table {
         WorkEnd::default()
     } else {
@@ -104,6 +113,36 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         super::print(&text::results(&results))?;
     }
     conclude(args, &out, &ended, results.finished(), results.runs.len())
+}
+
+/// Leaves the runs that are to do to Slurm.
+fn submit(args: &Args, out: &Path, planned: &Planned, folder: &Folder, threads: usize) -> anyhow::Result<CommandEnd> {
+    let of = planned.plan.runs.len();
+    let open = |run: &usize| work::is_open(folder, &planned.plan.runs[run - 1].name);
+    let runs: Vec<usize> = (1..=of).filter(open).collect();
+    if runs.is_empty() {
+        tell(&format!("nothing to submit: {of} of {of} runs are made; tables: racer study {} --table", args.file));
+        return Ok(CommandEnd::Done);
+    }
+    let job = slurm::submit(out, &args.slurm, &Tasks { runs: &runs, of, threads, command: args.again(out)? })?;
+    tell(&format!("job {job}: {} of {of} runs are to do, {threads} processors each", runs.len()));
+    tell(&format!("what they print: {}", slurm::prints(out).display()));
+    tell(&format!("how far it is: racer study {} --out {} --table", args.file, out.display()));
+    Ok(CommandEnd::Done)
+}
+
+impl Args {
+    /// The same study into the same folder, as a command's words.
+    fn again(&self, out: &Path) -> std::io::Result<Vec<String>> {
+        let out = std::path::absolute(out)?.display().to_string();
+        let mut words = vec!["study".to_string(), self.file.clone(), "--out".into(), out];
+        for (option, value) in
+            [("--minutes", self.minutes.map(|x| x.to_string())), ("--steps", self.steps.map(|x| x.to_string()))]
+        {
+            words.extend(value.into_iter().flat_map(|value| [option.to_string(), value]));
+        }
+        Ok(words)
+    }
 }
 
 /// Runs at a time and threads of each.
@@ -135,6 +174,9 @@ fn list(planned: &Planned, folder: &Folder, shard: Shard) -> String {
 /// What is left to say, and how it ended.
 fn conclude(args: &Args, out: &Path, ended: &WorkEnd, finished: usize, planned: usize) -> anyhow::Result<CommandEnd> {
     tell(&format!("{finished} of {planned} runs are finished; tables in {}", out.display()));
+    if let Some((job, states)) = slurm::under_way(out) {
+        tell(&format!("job {job} of Slurm: {states}"));
+    }
     for name in &ended.elsewhere {
         tell(&format!("{name} is being made by another process"));
     }

@@ -1,6 +1,8 @@
 //! Studies as a user meets them: what a file spans, what is refused before anything starts, and that interruptions
 //! leave no trace in the tables.
 
+mod slurm;
+
 use crate::support::racer;
 use racer::base::check::BadInput;
 use racer::base::document::Document;

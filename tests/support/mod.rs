@@ -19,9 +19,16 @@ pub struct Ran {
 
 /// `racer args` in `folder`.
 pub fn racer(folder: &Path, args: &[&str]) -> Ran {
-    let output = Command::cargo_bin("racer").unwrap().current_dir(folder).args(args).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    Ran { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
+    Ran::of(Command::cargo_bin("racer").unwrap().current_dir(folder).args(args))
+}
+
+impl Ran {
+    /// What `command` does.
+    pub fn of(command: &mut Command) -> Self {
+        let output = command.output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Self { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
+    }
 }
 
 /// Says that a test is skipped because something is missing; fails where the environment has the variable `required`.

@@ -48,7 +48,7 @@ enum Made {
 /// Makes all runs of the part that are not finished.
 pub fn work(work: &Work) -> anyhow::Result<WorkEnd> {
     let runs = work.planned.plan.runs.iter().enumerate();
-    let missing = runs.filter(|(i, run)| work.shard.has(*i) && open(work.folder, &run.name)).map(|(i, _)| i);
+    let missing = runs.filter(|(i, run)| work.shard.has(*i) && is_open(work.folder, &run.name)).map(|(i, _)| i);
     let missing: Vec<usize> = missing.collect();
     if missing.is_empty() {
         return Ok(WorkEnd::default());
@@ -101,7 +101,7 @@ fn remark(made: &Made) -> String {
 }
 
 /// Whether there is a run to be made.
-fn open(folder: &Folder, name: &str) -> bool {
+pub fn is_open(folder: &Folder, name: &str) -> bool {
     matches!(folder.state(name), RunState::Missing | RunState::Damaged(_))
 }
 
@@ -113,7 +113,7 @@ fn make(work: &Work, run: usize, heard: &(dyn Fn(&str) + Sync)) -> anyhow::Resul
         return Ok(Made::Stopped);
     }
     let Some(claim) = Claim::take(&folder.work(), &about.name)? else { return Ok(Made::Elsewhere) };
-    if !open(folder, &about.name) {
+    if !is_open(folder, &about.name) {
         return Ok(Made::Before);
     }
     let training = ChildTraining { config: &planned.config, settings, threads: *threads, out: claim.work() };
