@@ -88,7 +88,7 @@ pub fn identify(logs: Vec<Quality>, options: &IdentifyOptions, watch: Watch) -> 
         });
         let whole = all.vehicle(&data, DataPart::All, &start, &all.everything(), full_rate);
         let highest = all.thrust.as_ref().map_or(1.0, |fit| fit.flown[1].min(1.0));
-        let [full, flown] = [1.0, highest].map(|u| fill::thrust_of(&all, &whole, u));
+        let [full, flown] = [1.0, highest].map(|u| fill::thrust::thrust_of(&all, &whole, u));
         let judged = judge::judge(&all, &predicted[1], &flown);
         if drag && all.everything().drag && !judged.kept.drag && judged.kept.thrust {
             // The thrust beside a drag that is not the vehicle's would be another thrust.
