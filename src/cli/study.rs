@@ -70,8 +70,8 @@ cpu_configurations, seeds_paper, seeds, regularisation, regularisation_factorial
 
 Every setting is checked before the first run begins. After any interruption the same command goes on, without \
 repeating a finished run; with --steps it ends in the same tables. Ctrl-C ends the runs under way, which are repeated \
-then. --slurm submits the runs that are still to do as an array job; called again when that is over, those that failed. \
---table says how far it is.
+then. --slurm submits the runs that are still to do as an array job; called again when that is over, those that \
+failed. --table says how far it is.
 
 Examples:
   racer study mine.toml

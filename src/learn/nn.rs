@@ -21,8 +21,8 @@ pub const TILE_BLOCKS: usize = 4;
 pub const TILE_SAMPLES: usize = TILE_BLOCKS * LANES;
 
 /// Actor, critic and the logarithm of the exploration noise, in one flat vector: actor, critic, log_std. Its order is
-/// that of the kernels (see [`Layout`](mlp::Layout)), with zeros between the parts; [`Network::layer`] gives the order of the
-/// textbook.
+/// that of the kernels (see [`Layout`](mlp::Layout)), with zeros between the parts; [`Network::layer`] has the order
+/// of the textbook.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network<E> {
     pub actor: Layout,
