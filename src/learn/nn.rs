@@ -20,9 +20,10 @@ pub const HIDDEN: usize = 64;
 pub const TILE_BLOCKS: usize = 4;
 pub const TILE_SAMPLES: usize = TILE_BLOCKS * LANES;
 
-/// Actor, critic and the logarithm of the exploration noise, in one flat vector: actor, critic, log_std. Its order is
-/// that of the kernels (see [`Layout`](mlp::Layout)), with zeros between the parts; [`Network::layer`] has the order
-/// of the textbook.
+/// Actor, critic and the logarithm of the exploration noise, in one flat vector: actor, critic, log_std.
+///
+/// Its order is that of the kernels (see [`Layout`](mlp::Layout)), with zeros between the parts; [`Network::layer`] has
+/// the order of the textbook.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network<E> {
     pub actor: Layout,
