@@ -1,19 +1,19 @@
 //! `racer pilot`: a policy flies a vehicle over a link, in real time.
 
 use super::{CommandEnd, interrupt, tell};
-use crate::base::check::BadInput;
 use crate::base::fsio::Reserved;
 use crate::flight::live::histogram::Histogram;
+use crate::flight::live::pace::{self, Line, Timing, User};
 use crate::flight::live::phase::{Phase, Reason};
-use crate::flight::live::udp::{self, Timing};
-use crate::flight::live::{Live, Mission};
+use crate::flight::live::route::{self, Wishes};
+use crate::flight::live::{Live, Mission, port};
 use crate::flight::write;
 use crate::present::run;
 use crate::race::onboard::Surroundings;
 use crate::race::snapshot::Snapshot;
 use std::fmt::Write;
-use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 use std::path::PathBuf;
+use std::sync::mpsc::sync_channel;
 
 /// Let a policy fly a vehicle: states in, setpoints out, in real time
 #[derive(Debug, clap::Args)]
@@ -22,12 +22,19 @@ pub struct Args {
     /// A run folder (its best policy), a snapshot file, or `latest` for the youngest run below runs/
     #[arg(value_name = "RUN|SNAPSHOT|latest")]
     policy: String,
-    /// Where states arrive
-    #[arg(long = "in", value_name = "udp:PORT")]
+    /// Where states come from: udp:PORT (racer's own packets), or mavlink:LINK
+    #[arg(long = "in", value_name = "SOURCE")]
     input: String,
-    /// Where setpoints go
-    #[arg(long = "out", value_name = "udp:HOST:PORT")]
-    output: String,
+    /// Where setpoints go: udp:HOST:PORT, mavlink:LINK, or msp:LINK [default: back to where states come from]
+    #[arg(long = "out", value_name = "SINK")]
+    output: Option<String>,
+    /// The dead man's switch: offboard (armed, and in the mode that takes setpoints), rc:CHANNEL (held above 1700 us),
+    /// or button:NUMBER [default: the bit in racer's own packets]
+    #[arg(long)]
+    switch: Option<String>,
+    /// Over MSP: the channel that arms, 5 to 16, a second before the flight [default: the pilot arms]
+    #[arg(long, value_name = "CHANNEL", value_parser = clap::value_parser!(u8).range(5..=16))]
+    arm: Option<u8>,
     /// Laps to fly [default: until something else ends the flight]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     laps: Option<u32>,
@@ -40,33 +47,57 @@ pub struct Args {
 }
 
 const HELP: &str = "The policy is given the vehicle when a fresh state shows it at rest on the track's start pad and \
-the dead man's switch in the packets is released once and then held. It hands back, for good, when the switch is \
-released, at Ctrl-C, and on a stale or jumping estimate, an empty battery, the fence of the flight volume, a missed \
-gate, or an observation outside of the training's for 0.2 s. docs/flying.md has the packets and draws the states.
+the dead man's switch is released once and then held. It hands back, for good, when the switch is released, at Ctrl-C, \
+and on a stale or jumping estimate, a battery that is empty or untold, the fence of the flight volume, a missed gate, a \
+broken link, or an observation outside of the training's for 0.2 s. A LINK is udp:PORT (answers go to whoever spoke), \
+udp:HOST:PORT, tcp:HOST:PORT, or /dev/NAME[:BAUD]. docs/flying.md says what to set in the firmware, has the packets, \
+and draws the states.
 
-Example:
-  racer pilot latest --in udp:9101 --out udp:127.0.0.1:9102 --laps 3 --log flight.mcap";
+Examples:
+  racer pilot latest --in udp:9101 --out udp:127.0.0.1:9102 --laps 3 --log flight.mcap
+  racer pilot latest --in mavlink:udp:14540 --switch offboard --laps 3
+  racer pilot latest --in udp:9101 --out msp:/dev/ttyACM0 --switch rc:8 --laps 3";
+
+/// Periods that motors are given to arm and to spin up: a second.
+const LEAD: u32 = 100;
 
 /// Waits, flies, reports.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let snapshot = Snapshot::read(&run::find(&args.policy)?.snapshot)?;
-    let port = parse_input(&args.input)?;
-    let to = parse_output(&args.output)?;
-    let file = args.log.as_deref().map(Reserved::new).transpose()?;
-    let input = UdpSocket::bind(("0.0.0.0", port)).map_err(|error| {
-        BadInput::new(format!("--in {}", args.input), error, "a port that is free", "choose another port")
-    })?;
     let range = snapshot.ranges();
     let Snapshot { network, about } = snapshot;
-    let mission = Mission { network, track: about.track, vehicle: about.vehicle, range, laps: args.laps };
+    let lead = if args.arm.is_some() { LEAD } else { 0 };
+    let mission = Mission { network, track: about.track, vehicle: about.vehicle, range, laps: args.laps, lead };
     let around = Surroundings::of(&mission.track, &mission.vehicle);
+    let wishes = Wishes {
+        source: &args.input,
+        sink: args.output.as_deref(),
+        switch: args.switch.as_deref(),
+        arm: args.arm.map(usize::from),
+        full_rate: around.full_rate,
+    };
+    let legs = route::legs(&wishes)?;
+    let file = args.log.as_deref().map(Reserved::new).transpose()?;
+    let (to, arrived) = sync_channel(port::WAITING);
+    let mut lines = Vec::new();
+    for (i, leg) in legs.into_iter().enumerate() {
+        let port = port::open(&leg.endpoint, &leg.option, i, &to)?;
+        lines.push(Line { protocol: leg.protocol, port });
+    }
     let mut live = Live::new(&mission, &around);
     interrupt::watch("handing back; Ctrl-C again ends at once");
-    tell(&format!("{} in {}; states at port {port}, setpoints to {to}", mission.track.name, mission.vehicle.name));
+    let sink = args.output.as_deref().unwrap_or("the same link");
+    tell(&format!(
+        "{} in {}; states from {}, setpoints to {sink}",
+        mission.track.name, mission.vehicle.name, args.input
+    ));
     let mut told = |phase: Phase, reason: Option<Reason>| {
-        tell(&format!("{}{}", name(phase), reason.map_or(String::new(), |r| format!(": {}", r.text()))));
+        let reason = reason.map_or(String::new(), |r| format!(": {}", r.text()));
+        let hint = if phase == Phase::Ready { ": hold the switch to fly" } else { "" };
+        tell(&format!("{}{hint}{reason}", phase.name()));
     };
-    let timing = udp::fly(&mut live, &input, to, args.seconds, &interrupt::asked, &mut told)?;
+    let mut user = User { key: &interrupt::asked, told: &mut told };
+    let timing = pace::fly(&mut live, &mut lines, &arrived, args.seconds, &mut user);
     super::print(&summary(&live, &timing))?;
     if let Some(file) = file {
         let written = file.write(&write::mcap(&live.record.log)?)?;
@@ -75,34 +106,13 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     Ok(CommandEnd::Done)
 }
 
-fn parse_input(text: &str) -> Result<u16, BadInput> {
-    let port = text.strip_prefix("udp:").and_then(|port| port.parse().ok()).filter(|&port| port > 0);
-    port.ok_or_else(|| BadInput::new("--in", text, "udp:PORT, such as udp:9101", ""))
-}
-
-fn parse_output(text: &str) -> Result<SocketAddr, BadInput> {
-    let refuse = |why: String| BadInput::new("--out", why, "udp:HOST:PORT, such as udp:127.0.0.1:9102", "");
-    let place = text.strip_prefix("udp:").ok_or_else(|| refuse(text.into()))?;
-    let found = place.to_socket_addrs().map_err(|error| refuse(format!("{text}: {error}")))?.next();
-    found.ok_or_else(|| refuse(format!("{text}, which names no address")))
-}
-
-fn name(phase: Phase) -> &'static str {
-    match phase {
-        Phase::Waiting => "waiting",
-        Phase::Ready => "ready: hold the switch to fly",
-        Phase::Flying => "flying",
-        Phase::Ended => "ended",
-    }
-}
-
 /// The flight, the link, and how well real time was kept.
 fn summary(live: &Live, timing: &Timing) -> String {
     let link = &live.link;
     let mut text = format!("gates      {} passed\n", live.gates);
     let _ = writeln!(
         text,
-        "states     {} packets; {} lost, {} late or doubled, {} unusable, {} foreign",
+        "states     {}; {} messages lost, {} late or doubled, {} unusable, {} foreign",
         link.received, link.lost, link.late, link.unusable, link.foreign
     );
     for (name, histogram) in [("age", &live.ages), ("wake-up", &timing.wake), ("answer", &timing.answer)] {

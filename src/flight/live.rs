@@ -1,24 +1,36 @@
 //! A policy that flies a vehicle: states in, setpoints out, at the policy's rate. `docs/flying.md` draws the states.
 //!
-//! [`Live`] has neither socket nor clock, so that every transition can be tested; whoever runs it brings both.
+//! [`Live`] has neither socket nor clock, so that every transition can be tested; `pace` brings both. A protocol is one
+//! file, which turns bytes into what was [`heard`](heard::Heard) and an [`Answer`] into bytes.
 
+pub mod answer;
+pub mod duty;
+pub mod endpoint;
 pub mod guard;
+pub mod heard;
 pub mod histogram;
 pub mod link;
-pub mod packet;
+pub mod mavlink;
+pub mod msp;
+pub mod pace;
+pub mod packets;
 pub mod phase;
+pub mod port;
+pub mod protocol;
 mod record;
-pub mod udp;
+pub mod route;
+pub mod switch;
 
 use crate::learn::nn::Network;
 use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
 use crate::race::env::observe::OBSERVATIONS;
 use crate::race::onboard::{AT_START, Crossing, Memory, Onboard, Setpoint, Surroundings};
+use answer::Answer;
 use guard::{Guard, Limits};
+use heard::Heard;
 use histogram::Histogram;
 use link::Link;
-use packet::Answer;
 use phase::{Machine, Phase, Reason};
 use record::Record;
 
@@ -32,9 +44,11 @@ pub struct Mission {
     pub range: [[f32; OBSERVATIONS]; 2],
     /// Laps after which the flight is over; none: until something else ends it.
     pub laps: Option<u32>,
+    /// Periods from the switch to the flight, which motors take to arm and to spin up.
+    pub lead: u32,
 }
 
-/// A flight from the first packet to its end.
+/// A flight from the first state to its end.
 #[derive(Debug)]
 pub struct Live<'a> {
     mission: &'a Mission,
@@ -51,14 +65,14 @@ pub struct Live<'a> {
 }
 
 impl<'a> Live<'a> {
-    /// Before the first packet. `around` is of the mission's track and vehicle.
+    /// Before the first state. `around` is of the mission's track and vehicle.
     pub fn new(mission: &'a Mission, around: &'a Surroundings) -> Self {
         Self {
             mission,
             around,
             memory: Memory::before(0, AT_START),
             guard: Guard::new(Limits::of(&mission.track, &mission.vehicle)),
-            machine: Machine::default(),
+            machine: Machine::new(mission.lead),
             link: Link::default(),
             record: Record::default(),
             gates: 0,
@@ -66,15 +80,16 @@ impl<'a> Live<'a> {
         }
     }
 
-    /// A packet that arrived at `now_s`.
-    pub fn receive(&mut self, bytes: &[u8], now_s: f64) {
-        if let Some(sight) = self.link.receive(bytes, now_s) {
-            self.guard.look(&sight.estimate, now_s);
+    /// What arrived at `now_s`.
+    pub fn receive(&mut self, heard: Heard, now_s: f64) {
+        if let Some(sight) = self.link.receive(heard, now_s) {
+            // By the sender's clock: what came late did not move faster.
+            self.guard.look(&sight.estimate, sight.time_us as f64 * 1e-6);
             self.record.state(now_s, &sight.estimate);
         }
     }
 
-    /// One control period at `now_s`: the packet to send. `key` is whether the user asked for an end.
+    /// One control period at `now_s`: what to send. `key` is whether the user asked for an end.
     pub fn tick(&mut self, now_s: f64, key: bool) -> Answer {
         let before = self.machine.phase;
         let sight = self.link.newest();
@@ -83,13 +98,16 @@ impl<'a> Live<'a> {
             Some(sight) => self.guard.before(&sight.estimate, age_s),
             None => Some(Reason::NoState),
         };
-        self.machine.advance(hold, sight.is_some_and(|sight| sight.switch), key);
+        let switch = self.link.held(now_s);
+        self.machine.advance(hold, switch, key);
         if (before, self.machine.phase) == (Phase::Ready, Phase::Flying) {
             self.memory = Memory::before(0, AT_START);
             self.gates = 0;
         }
         let setpoint = self.flying_step(now_s, age_s);
-        Answer { phase: self.machine.phase, reason: self.machine.reason, time_us: self.link.time_us(), setpoint }
+        let Machine { phase, reason, .. } = self.machine;
+        let armed = self.machine.armed(switch);
+        Answer { phase, reason, armed, time_us: sight.map_or(0, |sight| sight.time_us), setpoint }
     }
 
     /// The setpoint, where the policy has the vehicle before and after this step.

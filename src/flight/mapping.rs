@@ -1,7 +1,7 @@
 //! What the columns of a file mean: which is which quantity, in which unit, with which sign, in which frame.
 
 mod apply;
-mod frames;
+pub mod frames;
 mod join;
 mod parts;
 mod quantity;

@@ -58,7 +58,7 @@ impl Guard {
         Self { limits, last: None, jumped: false, outside: 0 }
     }
 
-    /// A new estimate at `now_s`.
+    /// A new estimate of the time `now_s`.
     pub fn look(&mut self, estimate: &Estimate, now_s: f64) {
         self.jumped = self.last.as_ref().is_some_and(|(then_s, last)| {
             let seconds = (now_s - then_s) as f32;
@@ -80,6 +80,7 @@ impl Guard {
             (age_s > STALE_S, Reason::Stale),
             (self.jumped, Reason::Jump),
             (!inside, Reason::Fence),
+            (estimate.voltage.is_nan(), Reason::NoVoltage),
             (estimate.voltage < l.empty_v, Reason::LowBattery),
             (distance(&estimate.position, &l.start) > START_M, Reason::NotAtStart),
             (length(&estimate.velocity) > REST_M_S, Reason::NotAtRest),

@@ -17,6 +17,18 @@ pub enum Phase {
     Ended,
 }
 
+impl Phase {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Phase::Waiting => "waiting",
+            Phase::Ready => "ready",
+            Phase::Flying => "flying",
+            Phase::Ended => "ended",
+        }
+    }
+}
+
 /// Why it is not ready, or why it ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reason {
@@ -34,10 +46,12 @@ pub enum Reason {
     MissedGate,
     Key,
     LapsDone,
+    NoVoltage,
+    LinkLost,
 }
 
 impl Reason {
-    const ALL: [(Reason, &'static str); 14] = [
+    const ALL: [(Reason, &'static str); 16] = [
         (Reason::NoState, "no usable state has arrived"),
         (Reason::Stale, "the newest state is too old"),
         (Reason::NotAtStart, "the vehicle is not on the start pad"),
@@ -52,6 +66,8 @@ impl Reason {
         (Reason::MissedGate, "a gate was missed"),
         (Reason::Key, "the user asked for it"),
         (Reason::LapsDone, "the laps are flown"),
+        (Reason::NoVoltage, "nothing tells the battery's voltage"),
+        (Reason::LinkLost, "the link for setpoints broke"),
     ];
 
     /// In an answer's packet: its place in this list, from 1.
@@ -72,9 +88,22 @@ pub struct Machine {
     pub reason: Option<Reason>,
     /// Whether the switch was seen released since all was well.
     released: bool,
+    /// Periods from the switch to the flight, which motors take to arm and to spin up, and how many of them are over.
+    lead: u32,
+    led: u32,
 }
 
 impl Machine {
+    /// Before the first period.
+    pub fn new(lead: u32) -> Self {
+        Self { lead, ..Self::default() }
+    }
+
+    /// Whether the motors may turn, where the switch is held or not.
+    pub fn armed(&self, switch: bool) -> bool {
+        self.phase == Phase::Flying || self.phase == Phase::Ready && switch
+    }
+
     /// One period: what speaks against flying, whether the switch is held, whether the user asks for an end.
     pub fn advance(&mut self, against: Option<Reason>, switch: bool, key: bool) {
         // What speaks against a start is no reason to end a flight.
@@ -86,12 +115,12 @@ impl Machine {
             Phase::Flying if !switch => self.end(Reason::SwitchReleased),
             Phase::Flying => {}
             Phase::Waiting | Phase::Ready if against.is_some() => {
-                *self = Self { phase: Phase::Waiting, reason: against, released: false };
+                *self = Self { reason: against, ..Self::new(self.lead) };
             }
             Phase::Waiting if switch => self.reason = Some(Reason::SwitchHeld),
-            Phase::Waiting => *self = Self { phase: Phase::Ready, reason: None, released: true },
-            Phase::Ready if switch && self.released => self.phase = Phase::Flying,
-            Phase::Ready => {}
+            Phase::Waiting => *self = Self { phase: Phase::Ready, released: true, ..Self::new(self.lead) },
+            Phase::Ready if switch && self.released && self.led >= self.lead => self.phase = Phase::Flying,
+            Phase::Ready => self.led = if switch { self.led + 1 } else { 0 },
         }
     }
 
@@ -123,8 +152,24 @@ mod tests {
         assert_eq!(after(&[fine]).phase, Phase::Ready);
         assert_eq!(after(&[fine, held]).phase, Phase::Flying);
         let away = (Some(Reason::NotAtStart), false, false);
-        assert_eq!(after(&[fine, away]), Machine { phase: Phase::Waiting, reason: away.0, released: false });
+        assert_eq!(after(&[fine, away]), Machine { reason: away.0, ..Machine::default() });
         assert_eq!(after(&[fine, away, held, held]).phase, Phase::Waiting);
+    }
+
+    #[test]
+    fn motors_are_given_their_time_before_the_flight() {
+        let mut machine = Machine::new(2);
+        let mut step = |switch| {
+            machine.advance(None, switch, false);
+            (machine.phase, machine.armed(switch))
+        };
+        assert_eq!(step(false), (Phase::Ready, false));
+        assert_eq!([step(true), step(false)], [(Phase::Ready, true), (Phase::Ready, false)]);
+        assert_eq!(
+            [step(true), step(true), step(true)],
+            [(Phase::Ready, true), (Phase::Ready, true), (Phase::Flying, true)]
+        );
+        assert_eq!(step(false), (Phase::Ended, false));
     }
 
     #[test]
@@ -143,6 +188,6 @@ mod tests {
         }
         assert_eq!(after(&[fine, (None, false, true)]).reason, Some(Reason::Key));
         let codes: Vec<_> = Reason::ALL.iter().map(|(reason, _)| reason.code()).collect();
-        assert_eq!(codes, (1..=14).collect::<Vec<_>>());
+        assert_eq!(codes, (1..=16).collect::<Vec<_>>());
     }
 }

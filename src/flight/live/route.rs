@@ -1,0 +1,134 @@
+//! From what the user named to the protocols and endpoints of a flight.
+
+use super::duty::Duty;
+use super::endpoint::Endpoint;
+use super::mavlink::Mavlink;
+use super::msp::Msp;
+use super::packets::Packets;
+use super::protocol::Protocol;
+use super::switch::Switch;
+use crate::base::check::BadInput;
+
+/// What the user asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Wishes<'a> {
+    /// Where states come from, and where setpoints go; none: back to where states come from.
+    pub source: &'a str,
+    pub sink: Option<&'a str>,
+    pub switch: Option<&'a str>,
+    /// The channel that arms over MSP, from 1.
+    pub arm: Option<usize>,
+    /// Rates that full sticks ask for, rad/s.
+    pub full_rate: [f64; 3],
+}
+
+/// A protocol, and where it is spoken.
+pub struct Leg {
+    pub protocol: Box<dyn Protocol>,
+    pub endpoint: Endpoint,
+    /// The option that named it, with its value.
+    pub option: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Language {
+    Packets,
+    Mavlink,
+    Msp,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Name {
+    option: String,
+    language: Language,
+    endpoint: Endpoint,
+}
+
+const PLACES: &str = "udp:PORT, udp:HOST:PORT, tcp:HOST:PORT or /dev/NAME[:BAUD]";
+
+/// The legs of a flight: the first brings states.
+pub fn legs(wishes: &Wishes) -> Result<Vec<Leg>, BadInput> {
+    let source = source(wishes.source)?;
+    let sink = wishes.sink.filter(|sink| *sink != wishes.source).map(sink).transpose()?;
+    let last = sink.as_ref().unwrap_or(&source).language;
+    let switch = wishes.switch.map(Switch::parse).transpose()?;
+    check_switch(switch, source.language, last)?;
+    if let Some(arm) = wishes.arm.filter(|_| last != Language::Msp) {
+        return Err(BadInput::new(
+            format!("--arm {arm}"),
+            "no msp: in --out",
+            "--arm with an --out of msp:",
+            "leave it out: the pilot arms",
+        ));
+    }
+    let leg = |name: Name, duty: Duty| {
+        // racer's own packets leave a switch that is named to the other link.
+        let switch = switch.filter(|_| duty.source || source.language == Language::Packets);
+        let protocol: Box<dyn Protocol> = match name.language {
+            Language::Packets => Box::new(Packets::new(switch.is_none(), duty.sink)),
+            Language::Mavlink => Box::new(Mavlink::new(switch, duty)),
+            Language::Msp => Box::new(Msp::new(switch, wishes.full_rate, wishes.arm)),
+        };
+        Leg { protocol, endpoint: name.endpoint, option: name.option }
+    };
+    let both = Duty { source: true, sink: sink.is_none() };
+    let mut legs = vec![leg(source.clone(), both)];
+    legs.extend(sink.map(|sink| leg(sink, Duty { source: false, sink: true })));
+    Ok(legs)
+}
+
+/// What `text` names, after `option`, where `expected` is the kind of name that is asked for.
+fn parse(option: &str, text: &str, expected: &str) -> Result<Name, BadInput> {
+    let languages = [("mavlink:", Language::Mavlink), ("msp:", Language::Msp), ("", Language::Packets)];
+    let found = languages.iter().find_map(|(prefix, language)| Some((*language, text.strip_prefix(prefix)?)));
+    let (language, place) = found.unwrap_or((Language::Packets, text));
+    let endpoint = Endpoint::parse(place)
+        .map_err(|found| BadInput::new(option, found, expected, "docs/flying.md has an example of each"))?;
+    Ok(Name { option: format!("{option} {text}"), language, endpoint })
+}
+
+fn source(text: &str) -> Result<Name, BadInput> {
+    let expected = format!("udp:PORT, or mavlink: and then {PLACES}");
+    let name = parse("--in", text, &expected)?;
+    match (name.language, &name.endpoint) {
+        (Language::Mavlink, _) | (Language::Packets, Endpoint::Listen(_)) => Ok(name),
+        (Language::Msp, _) => Err(BadInput::new(
+            "--in",
+            text,
+            &expected,
+            "over MSP a flight controller does not tell where it is: name what does, such as motion capture",
+        )),
+        _ => Err(BadInput::new("--in", text, &expected, "racer's own packets arrive at a port of UDP")),
+    }
+}
+
+fn sink(text: &str) -> Result<Name, BadInput> {
+    let expected = format!("udp:HOST:PORT, or mavlink: or msp: and then {PLACES}");
+    let name = parse("--out", text, &expected)?;
+    match (name.language, &name.endpoint) {
+        (Language::Packets, Endpoint::Udp(_)) | (Language::Mavlink | Language::Msp, _) => Ok(name),
+        _ => Err(BadInput::new("--out", text, &expected, "racer's own packets go to a host and a port of UDP")),
+    }
+}
+
+/// Whether the links that there are have the switch.
+fn check_switch(switch: Option<Switch>, source: Language, sink: Language) -> Result<(), BadInput> {
+    let bearer = if source == Language::Packets { sink } else { source };
+    let (found, expected) = match (bearer, switch) {
+        (Language::Packets, None) | (Language::Mavlink, Some(_)) | (Language::Msp, Some(Switch::Channel(_))) => {
+            return Ok(());
+        }
+        (Language::Msp, None) => return Ok(()),
+        (Language::Packets, Some(_)) => {
+            ("a name", "none: over racer's own packets bit 0 of the last word is the switch")
+        }
+        (Language::Mavlink, None) => ("none", "--switch offboard, --switch rc:CHANNEL or --switch button:NUMBER"),
+        (Language::Msp, Some(_)) => ("another", "--switch rc:CHANNEL: over MSP there are only channels"),
+    };
+    Err(BadInput::new(
+        "--switch",
+        found,
+        expected,
+        "name what the pilot holds, and lets go of to have the vehicle back",
+    ))
+}
