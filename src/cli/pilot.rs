@@ -1,11 +1,12 @@
 //! `racer pilot`: a policy flies a vehicle over a link, in real time.
 
 use super::{CommandEnd, interrupt, tell};
+use crate::base::check::BadInput;
 use crate::base::fsio::Reserved;
 use crate::flight::live::histogram::Histogram;
 use crate::flight::live::pace::{self, Line, Timing, User};
 use crate::flight::live::phase::{Phase, Reason};
-use crate::flight::live::route::{self, Wishes};
+use crate::flight::live::route::{Leg, Route, Wishes};
 use crate::flight::live::{Live, Mission, port};
 use crate::flight::write;
 use crate::present::run;
@@ -63,27 +64,26 @@ const LEAD: u32 = 100;
 
 /// Waits, flies, reports.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
+    let route = Route::of(&Wishes {
+        source: &args.input,
+        sink: args.output.as_deref(),
+        switch: args.switch.as_deref(),
+        arm: args.arm.map(usize::from),
+    })?;
     let snapshot = Snapshot::read(&run::find(&args.policy)?.snapshot)?;
+    let file = args.log.as_deref().map(Reserved::new).transpose()?;
     let range = snapshot.ranges();
     let Snapshot { network, about } = snapshot;
     let lead = if args.arm.is_some() { LEAD } else { 0 };
     let mission = Mission { network, track: about.track, vehicle: about.vehicle, range, laps: args.laps, lead };
     let around = Surroundings::of(&mission.track, &mission.vehicle);
-    let wishes = Wishes {
-        source: &args.input,
-        sink: args.output.as_deref(),
-        switch: args.switch.as_deref(),
-        arm: args.arm.map(usize::from),
-        full_rate: around.full_rate,
-    };
-    let legs = route::legs(&wishes)?;
-    let file = args.log.as_deref().map(Reserved::new).transpose()?;
     let (to, arrived) = sync_channel(port::WAITING);
-    let mut lines = Vec::new();
-    for (i, leg) in legs.into_iter().enumerate() {
+    let open = |(i, leg): (usize, Leg)| {
         let port = port::open(&leg.endpoint, &leg.option, i, &to)?;
-        lines.push(Line { protocol: leg.protocol, port });
-    }
+        Ok(Line { protocol: leg.protocol, port })
+    };
+    let mut lines =
+        route.legs(around.full_rate).into_iter().enumerate().map(open).collect::<Result<Vec<_>, BadInput>>()?;
     let mut live = Live::new(&mission, &around);
     interrupt::watch("handing back; Ctrl-C again ends at once");
     let sink = args.output.as_deref().unwrap_or("the same link");
@@ -91,12 +91,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         "{} in {}; states from {}, setpoints to {sink}",
         mission.track.name, mission.vehicle.name, args.input
     ));
-    let mut told = |phase: Phase, reason: Option<Reason>| {
-        let reason = reason.map_or(String::new(), |r| format!(": {}", r.text()));
-        let hint = if phase == Phase::Ready { ": hold the switch to fly" } else { "" };
-        tell(&format!("{}{hint}{reason}", phase.name()));
-    };
-    let mut user = User { key: &interrupt::asked, told: &mut told };
+    let mut user = User { key: &interrupt::asked, told: &mut |phase, reason| tell(&phase_line(phase, reason)) };
     let timing = pace::fly(&mut live, &mut lines, &arrived, args.seconds, &mut user);
     super::print(&summary(&live, &timing))?;
     if let Some(file) = file {
@@ -104,6 +99,12 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         tell(&format!("written to {}", written.display()));
     }
     Ok(CommandEnd::Done)
+}
+
+fn phase_line(phase: Phase, reason: Option<Reason>) -> String {
+    let hint = if phase == Phase::Ready { ": hold the switch to fly" } else { "" };
+    let reason = reason.map_or(String::new(), |reason| format!(": {}", reason.text()));
+    format!("{}{hint}{reason}", phase.name())
 }
 
 /// The flight, the link, and how well real time was kept.

@@ -1,11 +1,13 @@
 //! A policy that flies a vehicle over a link: a whole flight against a simulated vehicle, and every fault, in every
 //! protocol.
 
+mod faults;
 mod mavlink;
 mod msp;
-pub mod tongue;
-pub mod vehicle;
 
+use crate::support::tongue::{ALL, Speech, Told, Tongue};
+use crate::support::vehicle::Peer;
+use faults::{Fault, Sent, flown};
 use racer::flight::live::guard::{OUTSIDE_STEPS, STALE_S};
 use racer::flight::live::heard::{Heard, Sight};
 use racer::flight::live::phase::{Phase, Reason};
@@ -14,8 +16,6 @@ use racer::flight::{Readable, mcap, write};
 use racer::race::onboard::Surroundings;
 use racer::race::snapshot::Snapshot;
 use std::path::Path;
-use tongue::{ALL, Speech, Told, Tongue};
-use vehicle::{Fault, Peer, Sent, flown};
 
 pub fn mission(laps: Option<u32>) -> Mission {
     let snapshot = Snapshot::read(Path::new("tests/golden/policy-73e7003.safetensors")).unwrap();

@@ -10,6 +10,7 @@ mod identify;
 mod import;
 mod kills;
 mod library;
+mod pilot;
 mod predict;
 mod show;
 mod study;

@@ -4,7 +4,9 @@
 #![allow(dead_code)]
 
 pub mod feed;
+pub mod tongue;
 pub mod ulog;
+pub mod vehicle;
 
 use assert_cmd::Command;
 use std::io::Write;

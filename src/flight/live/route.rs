@@ -18,8 +18,6 @@ pub struct Wishes<'a> {
     pub switch: Option<&'a str>,
     /// The channel that arms over MSP, from 1.
     pub arm: Option<usize>,
-    /// Rates that full sticks ask for, rad/s.
-    pub full_rate: [f64; 3],
 }
 
 /// A protocol, and where it is spoken.
@@ -46,35 +44,46 @@ struct Name {
 
 const PLACES: &str = "udp:PORT, udp:HOST:PORT, tcp:HOST:PORT or /dev/NAME[:BAUD]";
 
-/// The legs of a flight: the first brings states.
-pub fn legs(wishes: &Wishes) -> Result<Vec<Leg>, BadInput> {
-    let source = source(wishes.source)?;
-    let sink = wishes.sink.filter(|sink| *sink != wishes.source).map(sink).transpose()?;
-    let last = sink.as_ref().unwrap_or(&source).language;
-    let switch = wishes.switch.map(Switch::parse).transpose()?;
-    check_switch(switch, source.language, last)?;
-    if let Some(arm) = wishes.arm.filter(|_| last != Language::Msp) {
-        return Err(BadInput::new(
-            format!("--arm {arm}"),
-            "no msp: in --out",
-            "--arm with an --out of msp:",
-            "leave it out: the pilot arms",
-        ));
+/// What was asked for, understood.
+#[derive(Clone, Debug)]
+pub struct Route {
+    source: Name,
+    sink: Option<Name>,
+    switch: Option<Switch>,
+    arm: Option<usize>,
+}
+
+impl Route {
+    /// Understands `wishes`; opens nothing.
+    pub fn of(wishes: &Wishes) -> Result<Self, BadInput> {
+        let source = source(wishes.source)?;
+        let sink = wishes.sink.filter(|sink| *sink != wishes.source).map(sink).transpose()?;
+        let last = sink.as_ref().unwrap_or(&source).language;
+        let switch = wishes.switch.map(Switch::parse).transpose()?;
+        check_switch(switch, source.language, last)?;
+        if let Some(arm) = wishes.arm.filter(|_| last != Language::Msp) {
+            let place = format!("--arm {arm}");
+            return Err(BadInput::new(place, "no msp: in --out", "an --out of msp:", "leave it out: the pilot arms"));
+        }
+        Ok(Self { source, sink, switch, arm: wishes.arm })
     }
-    let leg = |name: Name, duty: Duty| {
-        // racer's own packets leave a switch that is named to the other link.
-        let switch = switch.filter(|_| duty.source || source.language == Language::Packets);
-        let protocol: Box<dyn Protocol> = match name.language {
-            Language::Packets => Box::new(Packets::new(switch.is_none(), duty.sink)),
-            Language::Mavlink => Box::new(Mavlink::new(switch, duty)),
-            Language::Msp => Box::new(Msp::new(switch, wishes.full_rate, wishes.arm)),
+
+    /// The legs, of which the first brings states. Full sticks ask for rates of `full_rate`, rad/s.
+    pub fn legs(&self, full_rate: [f64; 3]) -> Vec<Leg> {
+        let leg = |name: &Name, duty: Duty| {
+            // racer's own packets leave a switch that is named to the other link.
+            let switch = self.switch.filter(|_| duty.source || self.source.language == Language::Packets);
+            let protocol: Box<dyn Protocol> = match name.language {
+                Language::Packets => Box::new(Packets::new(switch.is_none(), duty.sink)),
+                Language::Mavlink => Box::new(Mavlink::new(switch, duty)),
+                Language::Msp => Box::new(Msp::new(switch, full_rate, self.arm)),
+            };
+            Leg { protocol, endpoint: name.endpoint.clone(), option: name.option.clone() }
         };
-        Leg { protocol, endpoint: name.endpoint, option: name.option }
-    };
-    let both = Duty { source: true, sink: sink.is_none() };
-    let mut legs = vec![leg(source.clone(), both)];
-    legs.extend(sink.map(|sink| leg(sink, Duty { source: false, sink: true })));
-    Ok(legs)
+        let mut legs = vec![leg(&self.source, Duty { source: true, sink: self.sink.is_none() })];
+        legs.extend(self.sink.iter().map(|sink| leg(sink, Duty { source: false, sink: true })));
+        legs
+    }
 }
 
 /// What `text` names, after `option`, where `expected` is the kind of name that is asked for.

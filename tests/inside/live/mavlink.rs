@@ -1,7 +1,7 @@
 //! MAVLink against pymavlink, which others wrote; frames, roles, and whom racer listens to.
 
-use super::tongue::{VEHICLE, heartbeat};
 use crate::support::python;
+use crate::support::tongue::{VEHICLE, heartbeat};
 use racer::flight::live::answer::Answer;
 use racer::flight::live::duty::Duty;
 use racer::flight::live::heard::{Heard, Sight};
@@ -108,9 +108,9 @@ fn same(a: &[Heard], b: &[Heard]) -> bool {
 fn pymavlink_is_read(bytes: &[u8]) {
     let half = std::f32::consts::FRAC_1_SQRT_2;
     let switches = |held| Heard::Switch { held, for_s: 0.5 };
-    // North, east, down is east, north, up another way round; level and heading north is a quarter turn to the left.
-    // A quarter turn more about each axis: by hand from the axes.
-    let parts = state(1_000_000, [2.0, 1.0, -3.0], [5.0, 4.0, -6.0], [0.0, half, half, 0.0]);
+    // By hand, from the axes of 0.5, 0.5, -0.5, 0.5: forward is down, right is south, down is west, which is a quarter
+    // turn about the axis that points north. Level and heading north is a quarter turn to the left from heading east.
+    let parts = state(1_000_000, [2.0, 1.0, -3.0], [5.0, 4.0, -6.0], [-half, 0.0, -half, 0.0]);
     let rest = [
         state(7_000_001, [1.0, -2.0, -3.0], [4.0, -5.0, -6.0], [1.0, 0.0, 0.0, 0.0]),
         state(7_010_001, [2.0, 1.0, -3.0], [5.0, 4.0, -6.0], [-half, 0.0, 0.0, -half]),

@@ -98,8 +98,9 @@ pub fn flown<'a>(
         if phases.last() != Some(&answer.phase) {
             phases.push(answer.phase);
         }
-        let obeyed = tongue.obeyed(&answer, peer.now_s + 0.004);
-        assert!(obeyed.is_none() || answer.phase == Phase::Flying, "{answer:?}");
+        let said = tongue.say(&answer, peer.now_s + 0.004);
+        let obeyed = tongue.obeyed(&said);
+        assert_eq!(obeyed.is_some(), answer.setpoint.is_some(), "{answer:?}");
         peer.fly(obeyed);
     }
     (live, answer, phases)

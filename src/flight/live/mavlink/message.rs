@@ -1,5 +1,5 @@
 //! The messages that are needed, of MAVLink's `common` set: identifiers, and where their fields stand. Source:
-//! mavlink.io/en/messages/common.html; `tests/inside/link/mavlink.rs` holds them against pymavlink.
+//! mavlink.io/en/messages/common.html; `tests/inside/live/mavlink.rs` holds them against pymavlink.
 
 pub const HEARTBEAT: u32 = 0;
 pub const SYS_STATUS: u32 = 1;

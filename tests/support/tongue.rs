@@ -106,25 +106,32 @@ impl Tongue {
         bytes
     }
 
-    /// Body rates (front-left-up, rad/s) and throttle that the vehicle takes from the bytes of an answer.
-    pub fn obeyed(&mut self, answer: &Answer, now_s: f64) -> Option<([f32; 3], f32)> {
+    /// What is sent for an answer.
+    pub fn say(&mut self, answer: &Answer, now_s: f64) -> Vec<u8> {
         let bytes = self.source.say(answer, now_s);
-        let flies = answer.setpoint.is_some();
-        match (self.speech, &mut self.sink) {
-            (Speech::Packets, _) => {
-                assert_eq!(bytes[20], u8::from(flies));
-                let float = |at: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[at + i]));
-                flies.then(|| ([float(24), float(28), float(32)], float(36)))
-            }
-            (_, None) => target(&bytes).filter(|_| flies),
-            (_, Some(sink)) => {
+        match &mut self.sink {
+            None => bytes,
+            Some(sink) => {
                 assert!(bytes.is_empty());
-                let sticks = sticks(&sink.say(answer, now_s));
-                assert!(flies || sticks[..4] == [1500, 1500, 1000, 1500], "{sticks:?}");
+                sink.say(answer, now_s)
+            }
+        }
+    }
+
+    /// Body rates (front-left-up, rad/s) and throttle that a vehicle takes from such bytes; none of an idle setpoint.
+    pub fn obeyed(&self, bytes: &[u8]) -> Option<([f32; 3], f32)> {
+        match self.speech {
+            Speech::Packets => {
+                let float = |at: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[at + i]));
+                (bytes[20] == 1).then(|| ([float(24), float(28), float(32)], float(36)))
+            }
+            Speech::Odometry | Speech::Parts => target(bytes).filter(|target| *target != ([0.0, -0.0, -0.0], 0.0)),
+            Speech::Sticks => {
+                let sticks = sticks(bytes);
                 let way = |i: usize| (f32::from(sticks[i]) - 1500.0) / 500.0;
                 let full = self.full_rate.map(|x| x as f32);
                 let rates = [way(0) * full[0], way(1) * full[1], -way(3) * full[2]];
-                flies.then_some((rates, (f32::from(sticks[2]) - 1050.0) / 950.0))
+                (sticks[..4] != [1500, 1500, 1000, 1500]).then_some((rates, (f32::from(sticks[2]) - 1050.0) / 950.0))
             }
         }
     }
