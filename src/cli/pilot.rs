@@ -49,8 +49,8 @@ pub struct Args {
 
 const HELP: &str = "The policy is given the vehicle when a fresh state shows it at rest on the track's start pad and \
 the dead man's switch is released once and then held. It hands back, for good, when the switch is released, at Ctrl-C, \
-and on a stale or jumping estimate, a battery that is empty or untold, the fence of the flight volume, a missed gate, a \
-broken link, or an observation outside of the training's for 0.2 s. A LINK is udp:PORT (answers go to whoever spoke), \
+and on a stale or jumping estimate, a battery that is empty or untold, the fence of the flight volume, a missed gate, \
+a broken link, or an observation outside of the training's for 0.2 s. A LINK is udp:PORT (answers go to who spoke), \
 udp:HOST:PORT, tcp:HOST:PORT, or /dev/NAME[:BAUD]. docs/flying.md says what to set in the firmware, has the packets, \
 and draws the states.
 

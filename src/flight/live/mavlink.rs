@@ -19,7 +19,7 @@ use state::Parts;
 const COMPONENT: u8 = 191;
 /// How often it says that it is there, and asks for what is missing, s.
 const BEAT_S: f64 = 1.0;
-/// What is asked of the flight controller, and how often, us: states faster than they are needed, so that they are young.
+/// What is asked of the flight controller, and how often, us: states faster than they are needed, to be young.
 const ASKED: [(u32, u32); 4] = [
     (message::ODOMETRY, 5_000),
     (message::RC_CHANNELS, 20_000),

@@ -82,8 +82,8 @@ impl Protocol for Msp {
         self.replies.hear(bytes).iter().filter_map(|reply| self.reply(reply)).collect()
     }
 
-    /// Sticks in every phase: the flight controller keeps the last it was sent, so that what comes after a flight has to
-    /// be middle, and no throttle.
+    /// Sticks in every phase: the flight controller keeps the last it was sent, so that a flight has to be followed by
+    /// middle sticks and no throttle.
     fn say(&mut self, answer: &Answer, _: f64) -> Vec<u8> {
         let sticks: Vec<u8> = self.channels(answer).iter().flat_map(|us| us.to_le_bytes()).collect();
         let mut out = request(SET_RAW_RC, &sticks);

@@ -38,7 +38,8 @@ pub struct User<'a> {
     pub told: &'a mut dyn FnMut(Phase, Option<Reason>),
 }
 
-/// Flies until it has ended or `most_s` are over. The first of the `lines` brings states; `arrived` is what comes by any.
+/// Flies until it has ended or `most_s` are over. The first of the `lines` brings states; what comes by any has
+/// `arrived`.
 pub fn fly(live: &mut Live, lines: &mut [Line], arrived: &Receiver<Arrival>, most_s: f64, user: &mut User) -> Timing {
     let begun = Instant::now();
     let mut timing = Timing::default();

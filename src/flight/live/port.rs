@@ -131,9 +131,9 @@ fn connected(address: SocketAddr, inbox: Inbox) -> io::Result<Box<dyn Port>> {
     stream(socket.try_clone()?, socket, inbox)
 }
 
-struct Stream<W>(W);
+struct Flowing<W>(W);
 
-impl<W: Write> Port for Stream<W> {
+impl<W: Write> Port for Flowing<W> {
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.0.write_all(bytes)
     }
@@ -145,5 +145,5 @@ fn stream(
     inbox: Inbox,
 ) -> io::Result<Box<dyn Port>> {
     listen(inbox, true, move |bytes| reader.read(bytes));
-    Ok(Box::new(Stream(writer)))
+    Ok(Box::new(Flowing(writer)))
 }

@@ -1,6 +1,6 @@
-//! Frames of MAVLink 2: 0xFD, length, two flags, sequence, system, component, three bytes of identifier, payload without
-//! its trailing zeros, CRC-16/MCRF4XX of all that and of a number that stands for the message's definition. Source:
-//! mavlink.io/en/guide/serialization.html.
+//! Frames of MAVLink 2: 0xFD, length, two flags, sequence, system, component, three bytes of identifier, payload
+//! without its trailing zeros, CRC-16/MCRF4XX of all that and of a number that stands for the message's definition.
+//! Source: mavlink.io/en/guide/serialization.html.
 
 use super::message::extra;
 
