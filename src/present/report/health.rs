@@ -11,7 +11,7 @@ use plotters::prelude::*;
 /// A row of the log: million steps, and the numbers of [`BOUNDS`].
 pub type HealthRow = (f64, [Option<f64>; BOUNDS.len()]);
 
-const PANEL: u32 = 130;
+const PANEL: u32 = 140;
 /// Points of a curve.
 const POINTS: usize = 300;
 
@@ -25,7 +25,7 @@ pub fn svg(rows: &[HealthRow]) -> Result<String> {
             let mut chart = ChartBuilder::on(area)
                 .caption(BOUNDS[k].column, ("sans-serif", TEXT))
                 .margin_right(16)
-                .x_label_area_size(if k + 1 == BOUNDS.len() { 40 } else { 16 })
+                .x_label_area_size(if k + 1 == BOUNDS.len() { 40 } else { 26 })
                 .y_label_area_size(72)
                 .build_cartesian_2d(0.0..end, y.clone())
                 .map_err(drawing)?;

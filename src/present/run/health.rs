@@ -32,9 +32,10 @@ pub const BOUNDS: [Bound; 6] = [
         column: "ppo/action_magnitude",
         name: "mean |tanh(mean action)|\u{b2}, of at most 4",
         low: 1e-4,
-        high: 3.0,
+        // About where a third of a lap's commands are at their limits.
+        high: 2.0,
         below: "the policy does nothing: its commands hardly leave the middle of the stick",
-        above: "the policy flies at full stick: raise ppo.action_magnitude or env.reward.action_change",
+        above: "much of the lap is flown at full stick: raise ppo.action_magnitude or env.reward.action_change",
     },
     Bound {
         column: "ppo/approx_kl",
