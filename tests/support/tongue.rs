@@ -43,6 +43,8 @@ pub struct Tongue {
     sink: Option<Box<dyn Protocol>>,
     full_rate: [f64; 3],
     number: u32,
+    /// What the sticks said last: not every frame has any.
+    sticks: Option<([f32; 3], f32)>,
 }
 
 pub const VEHICLE: [u8; 2] = [1, 1];
@@ -58,7 +60,7 @@ impl Tongue {
             Speech::Sticks => Box::new(Packets::new(true, false)),
         };
         let sink = (speech == Speech::Sticks).then(|| Box::new(Msp::new(None, full_rate, None)) as Box<dyn Protocol>);
-        Self { speech, source, sink, full_rate, number: 0 }
+        Self { speech, source, sink, full_rate, number: 0, sticks: None }
     }
 
     /// A state as it is sent.
@@ -119,7 +121,7 @@ impl Tongue {
     }
 
     /// Body rates (front-left-up, rad/s) and throttle that a vehicle takes from such bytes; none of an idle setpoint.
-    pub fn obeyed(&self, bytes: &[u8]) -> Option<([f32; 3], f32)> {
+    pub fn obeyed(&mut self, bytes: &[u8]) -> Option<([f32; 3], f32)> {
         match self.speech {
             Speech::Packets => {
                 let float = |at: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[at + i]));
@@ -127,11 +129,13 @@ impl Tongue {
             }
             Speech::Odometry | Speech::Parts => target(bytes).filter(|target| *target != ([0.0, -0.0, -0.0], 0.0)),
             Speech::Sticks => {
-                let sticks = sticks(bytes);
+                let Some(sticks) = sticks(bytes) else { return self.sticks };
                 let way = |i: usize| (f32::from(sticks[i]) - 1500.0) / 500.0;
                 let full = self.full_rate.map(|x| x as f32);
                 let rates = [way(0) * full[0], way(1) * full[1], -way(3) * full[2]];
-                (sticks[..4] != [1500, 1500, 1000, 1500]).then_some((rates, (f32::from(sticks[2]) - 1050.0) / 950.0))
+                let flies = sticks[..4] != [1500, 1500, 1000, 1500];
+                self.sticks = flies.then_some((rates, (f32::from(sticks[2]) - 1050.0) / 950.0));
+                self.sticks
             }
         }
     }
@@ -149,9 +153,9 @@ fn target(bytes: &[u8]) -> Option<([f32; 3], f32)> {
     })
 }
 
-fn sticks(bytes: &[u8]) -> [u16; 16] {
-    assert_eq!(&bytes[..5], [b'$', b'M', b'<', 32, 200]);
-    std::array::from_fn(|i| u16::from_le_bytes([bytes[5 + 2 * i], bytes[6 + 2 * i]]))
+fn sticks(bytes: &[u8]) -> Option<[u16; 16]> {
+    let channels = bytes.strip_prefix(&[b'$', b'M', b'<', 32, 200])?;
+    Some(std::array::from_fn(|i| u16::from_le_bytes([channels[2 * i], channels[2 * i + 1]])))
 }
 
 fn floats(numbers: &[f32]) -> Vec<u8> {

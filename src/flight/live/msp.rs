@@ -21,9 +21,14 @@ const HIGH: u16 = 2000;
 const HALF: f32 = 500.0;
 /// Throttle below which Betaflight sees none (`min_check`), us: its range begins there.
 const NO_THROTTLE: f32 = 1050.0;
-/// Periods between two questions for the channels, and for the battery.
-const ASK_CHANNELS: u64 = 2;
-const ASK_BATTERY: u64 = 50;
+/// Every so many commands one is a question instead of sticks, and every so many questions one for the battery.
+const ASK: u64 = 10;
+const ASK_BATTERY: u64 = 5;
+/// Commands that may wait to be answered. Betaflight reads one in 10 ms: what is sent faster piles up in its buffer, and
+/// sticks come ever later.
+const AHEAD: u32 = 2;
+/// Time without an answer after which none is waited for, s: the line may lead one way only.
+const SILENCE_S: f64 = 0.2;
 
 /// Sticks of a flight controller.
 #[derive(Debug)]
@@ -34,13 +39,24 @@ pub struct Msp {
     full_rate: [f32; 3],
     /// The channel that arms, from 1; none where the pilot does.
     arm: Option<usize>,
-    period: u64,
+    /// Commands sent, those of them that wait to be answered, and when the last answer came, s.
+    sent: u64,
+    waiting: u32,
+    answered_s: f64,
 }
 
 impl Msp {
     /// Before the first period. `switch` is what to take for the dead man's, if it is to come over this link.
     pub fn new(switch: Option<Switch>, full_rate: [f64; 3], arm: Option<usize>) -> Self {
-        Self { replies: Replies::default(), switch, full_rate: full_rate.map(|x| x as f32), arm, period: 0 }
+        Self {
+            replies: Replies::default(),
+            switch,
+            full_rate: full_rate.map(|x| x as f32),
+            arm,
+            sent: 0,
+            waiting: 0,
+            answered_s: f64::NEG_INFINITY,
+        }
     }
 
     fn reply(&self, reply: &Reply) -> Option<Heard> {
@@ -78,21 +94,32 @@ impl Msp {
 }
 
 impl Protocol for Msp {
-    fn hear(&mut self, bytes: &[u8], _: f64) -> Vec<Heard> {
-        self.replies.hear(bytes).iter().filter_map(|reply| self.reply(reply)).collect()
+    fn hear(&mut self, bytes: &[u8], now_s: f64) -> Vec<Heard> {
+        let replies = self.replies.hear(bytes);
+        if !replies.is_empty() {
+            self.answered_s = now_s;
+            self.waiting = self.waiting.saturating_sub(replies.len() as u32);
+        }
+        replies.iter().filter_map(|reply| self.reply(reply)).collect()
     }
 
     /// Sticks in every phase: the flight controller keeps the last it was sent, so that a flight has to be followed by
     /// middle sticks and no throttle.
-    fn say(&mut self, answer: &Answer, _: f64) -> Vec<u8> {
-        let sticks: Vec<u8> = self.channels(answer).iter().flat_map(|us| us.to_le_bytes()).collect();
-        let mut out = request(SET_RAW_RC, &sticks);
-        for (command, every) in [(RC, ASK_CHANNELS), (BATTERY_STATE, ASK_BATTERY)] {
-            if self.period.is_multiple_of(every) {
-                out.extend(request(command, &[]));
+    fn say(&mut self, answer: &Answer, now_s: f64) -> Vec<u8> {
+        if now_s - self.answered_s > SILENCE_S {
+            self.waiting = 0;
+        }
+        if self.waiting >= AHEAD {
+            return Vec::new();
+        }
+        (self.sent, self.waiting) = (self.sent + 1, self.waiting + 1);
+        match (self.sent % ASK, self.sent / ASK % ASK_BATTERY) {
+            (0, 1..) if self.switch.is_some() => request(RC, &[]),
+            (0, _) => request(BATTERY_STATE, &[]),
+            _ => {
+                let sticks: Vec<u8> = self.channels(answer).iter().flat_map(|us| us.to_le_bytes()).collect();
+                request(SET_RAW_RC, &sticks)
             }
         }
-        self.period += 1;
-        out
     }
 }

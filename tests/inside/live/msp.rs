@@ -64,3 +64,36 @@ fn channels_and_battery_of_the_flight_controller_are_heard() {
     assert_eq!(msp.hear(&reply(130, &battery[..4]), 0.0), []);
     assert_eq!(Msp::new(None, [1.0; 3], None).hear(&rc(2000), 0.0), []);
 }
+
+#[test]
+fn sticks_do_not_pile_up_before_a_slow_flight_controller() {
+    let mut msp = Msp::new(None, [10.0; 3], None);
+    let answer = flying([0.0; 3], 0.5);
+    let sent = |msp: &mut Msp, now_s: f64| !msp.say(&answer, now_s).is_empty();
+    // Whoever never answers is sent everything.
+    assert!((0..20).all(|i| sent(&mut msp, 0.01 * f64::from(i))));
+    // One answer in two periods, a hundredth behind: one command in two periods from the third on.
+    let mut count = 0;
+    for i in 20..120 {
+        let now_s = 0.01 * f64::from(i);
+        if i % 2 == 0 {
+            msp.hear(&reply(200, &[]), now_s);
+        }
+        count += u32::from(sent(&mut msp, now_s));
+    }
+    assert!((50..=52).contains(&count), "{count}");
+    // It falls silent: after a fifth of a second nothing is waited for.
+    assert!(!sent(&mut msp, 1.2) && sent(&mut msp, 1.5));
+}
+
+#[test]
+fn one_command_in_ten_is_a_question() {
+    let kinds = |switch| {
+        let mut msp = Msp::new(switch, [10.0; 3], None);
+        (0..100).map(|i| msp.say(&flying([0.0; 3], 0.5), 0.01 * f64::from(i))[4]).collect::<Vec<_>>()
+    };
+    let count = |kinds: &[u8], kind| kinds.iter().filter(|k| **k == kind).count();
+    let with = kinds(Some(Switch::Channel(8)));
+    assert_eq!([200, 105, 130].map(|kind| count(&with, kind)), [90, 8, 2]);
+    assert_eq!([200, 105, 130].map(|kind| count(&kinds(None), kind)), [90, 0, 10]);
+}
