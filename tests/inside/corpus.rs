@@ -47,6 +47,7 @@ fn corpus(reader: &str) -> Vec<Vec<u8>> {
                 .collect()
         }
         "results" => text("[]"),
+        "links" => super::live::spoken(),
         other => panic!("{other}"),
     }
 }

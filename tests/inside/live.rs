@@ -5,23 +5,58 @@ mod faults;
 mod mavlink;
 mod msp;
 
+use crate::support::feed::feed;
 use crate::support::tongue::{ALL, Speech, Told, Tongue};
 use crate::support::vehicle::Peer;
 use faults::{Fault, Sent, flown};
+use proptest::collection::vec;
+use proptest::prelude::{any, proptest};
+use proptest::sample::Index;
 use racer::flight::live::guard::{OUTSIDE_STEPS, STALE_S};
 use racer::flight::live::heard::{Heard, Sight};
 use racer::flight::live::phase::{Phase, Reason};
 use racer::flight::live::{Live, Mission};
 use racer::flight::{Readable, mcap, write};
-use racer::race::onboard::Surroundings;
+use racer::race::onboard::{Estimate, Surroundings};
 use racer::race::snapshot::Snapshot;
 use std::path::Path;
+
+/// Heading east.
+const LEVEL: [f32; 4] = [1.0, 0.0, 0.0, 0.0];
 
 pub fn mission(laps: Option<u32>) -> Mission {
     let snapshot = Snapshot::read(Path::new("tests/golden/policy-73e7003.safetensors")).unwrap();
     let range = snapshot.ranges();
     let (track, vehicle) = (snapshot.about.track, snapshot.about.vehicle);
     Mission { network: snapshot.network, track, vehicle, range, laps, lead: 0 }
+}
+
+/// What a vehicle says in each language, and a flight controller of its channels.
+pub fn spoken() -> Vec<Vec<u8>> {
+    let estimate =
+        Estimate { position: [1.0; 3], velocity: [2.0; 3], attitude: LEVEL, body_rates: [3.0; 3], voltage: 24.0 };
+    let told = Told { time_us: 1 << 33, estimate, switch: true };
+    let mut all: Vec<_> = ALL.iter().map(|speech| Tongue::new(*speech, [10.0; 3]).encode(&told)).collect();
+    all.push(msp::channels_read_back());
+    all
+}
+
+proptest! {
+    /// Any bytes, and what is spoken with some of it changed.
+    #[test]
+    fn whatever_arrives_is_heard_without_a_panic(
+        bytes in vec(any::<u8>(), 0..600),
+        which in 0..5usize,
+        changes in vec((any::<Index>(), any::<u8>()), 0..6),
+    ) {
+        feed("links", &bytes);
+        let mut spoken = spoken().swap_remove(which);
+        for (at, byte) in changes {
+            let at = at.index(spoken.len());
+            spoken[at] = byte;
+        }
+        feed("links", &spoken);
+    }
 }
 
 #[test]

@@ -5,6 +5,15 @@ use racer::flight::blackbox::decoder::FrameDecoder;
 use racer::flight::blackbox::definition::Definitions;
 use racer::flight::blackbox::header::Header;
 use racer::flight::blackbox::split;
+use racer::flight::live::answer::Answer;
+use racer::flight::live::duty::Duty;
+use racer::flight::live::heard::Heard;
+use racer::flight::live::mavlink::Mavlink;
+use racer::flight::live::msp::Msp;
+use racer::flight::live::packets::Packets;
+use racer::flight::live::phase::Phase;
+use racer::flight::live::protocol::Protocol;
+use racer::flight::live::switch::Switch;
 use racer::flight::mapping::Mapping;
 use racer::flight::open::{Options, open_bytes};
 use racer::flight::sensors::SensorConfig;
@@ -19,7 +28,7 @@ use racer::race::snapshot::Snapshot;
 use std::path::Path;
 
 /// A name for each reader: a fuzz target, and the folder of its corpus.
-pub const READERS: [&str; 7] = ["mcap", "ulog", "blackbox", "csv", "policy", "settings", "results"];
+pub const READERS: [&str; 8] = ["mcap", "ulog", "blackbox", "csv", "policy", "settings", "results", "links"];
 
 /// Whether the reader takes `bytes`.
 ///
@@ -38,8 +47,33 @@ pub fn feed(reader: &str, bytes: &[u8]) -> bool {
             serde_json::from_slice::<Vec<Evaluated>>(bytes).is_ok()
                 || serde_json::from_slice::<RunResult>(bytes).is_ok()
         }
+        "links" => links(bytes),
         other => panic!("no reader {other}"),
     }
+}
+
+/// Whether a link that hears the bytes, whole and in pieces, hears a state or a reply in them. It never hears more than
+/// they can hold.
+fn links(bytes: &[u8]) -> bool {
+    let duty = Duty { source: true, sink: true };
+    let switch = Some(Switch::Channel(8));
+    let mut all: [Box<dyn Protocol>; 3] = [
+        Box::new(Packets::new(true, true)),
+        Box::new(Mavlink::new(switch, duty)),
+        Box::new(Msp::new(switch, [10.0; 3], Some(5))),
+    ];
+    let mut read = false;
+    for protocol in &mut all {
+        for (i, piece) in bytes.chunks(bytes.len().max(1)).chain(bytes.chunks(7)).enumerate() {
+            let now_s = 0.01 * i as f64;
+            let heard = protocol.hear(piece, now_s);
+            assert!(heard.len() <= 600 + 2 * piece.len(), "{} of {}", heard.len(), piece.len());
+            read |= heard.iter().any(|heard| matches!(heard, Heard::State(_) | Heard::Switch { .. }));
+            let answer = Answer { phase: Phase::Ready, reason: None, armed: false, time_us: 0, setpoint: None };
+            assert!(protocol.say(&answer, now_s).len() < 1024);
+        }
+    }
+    read
 }
 
 /// Whether any flight in the file decodes, to no more rows than so many bytes can have.

@@ -45,6 +45,11 @@ fn reply(command: u8, payload: &[u8]) -> Vec<u8> {
     frame
 }
 
+/// Sixteen channels as a flight controller reads them out.
+pub fn channels_read_back() -> Vec<u8> {
+    reply(105, [1500u16; 16].map(u16::to_le_bytes).as_flattened())
+}
+
 #[test]
 fn channels_and_battery_of_the_flight_controller_are_heard() {
     let mut msp = Msp::new(Some(Switch::Channel(8)), [10.0; 3], None);
