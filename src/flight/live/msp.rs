@@ -24,8 +24,8 @@ const NO_THROTTLE: f32 = 1050.0;
 /// Every so many commands one is a question instead of sticks, and every so many questions one for the battery.
 const ASK: u64 = 10;
 const ASK_BATTERY: u64 = 5;
-/// Commands that may wait to be answered. Betaflight reads one in 10 ms: what is sent faster piles up in its buffer, and
-/// sticks come ever later.
+/// Commands that may wait to be answered. Betaflight reads one in 10 ms: what is sent faster piles up, and sticks come
+/// ever later.
 const AHEAD: u32 = 2;
 /// Time without an answer after which none is waited for, s: the line may lead one way only.
 const SILENCE_S: f64 = 0.2;
