@@ -11,4 +11,5 @@ pub mod memory;
 pub mod peak;
 pub mod rng;
 pub mod stats;
+pub mod stopwatch;
 pub mod threads;

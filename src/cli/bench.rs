@@ -1,10 +1,16 @@
 //! `racer bench`: how fast this machine is.
 
+mod parts;
+
 use super::values::threads;
 use super::{CommandEnd, tell};
 use crate::base::lane::Level;
-use crate::present::bench::{BenchFigures, Pair, PeakShares, measure};
+use crate::base::peak;
+use crate::learn::ppo::Environment;
+use crate::present::bench::threads::ThreadsModel;
+use crate::present::bench::{BenchFigures, Pair, PeakShares, measure, training_flops_per_step};
 use crate::race::config::{DEFAULT, Setup};
+use crate::race::env::Race;
 use serde::Serialize;
 use std::time::Duration;
 
@@ -21,6 +27,12 @@ pub struct Args {
     /// Time to measure for, about, s
     #[arg(long, allow_negative_numbers = true, default_value_t = 20.0, value_parser = parse_seconds)]
     seconds: f64,
+    /// Measure instead what the parts of an optimiser step cost on one thread
+    #[arg(long)]
+    parts: bool,
+    /// Measure instead what of training threads share, and predict its speed on 1 to 64
+    #[arg(long)]
+    threads_model: bool,
 }
 
 const HELP: &str = "Figures are environment steps of 10 ms a second, with the default configuration:
@@ -31,7 +43,10 @@ const HELP: &str = "Figures are environment steps of 10 ms a second, with the de
 The peak is that of single-precision multiply-adds, each counted as two operations. Shares of it are those on all \
 threads: of physics and environment, every operation counts as if it were a multiply-add; of training, only the \
 networks' multiply-adds count; of rollout, both. A share does not depend on the machine's speed, so a loss shows in \
-it.";
+it.
+
+--threads-model counts what of an iteration threads can share and what one does alone; clocks that fall when more \
+processors work, and the memory that they share, it leaves out.";
 
 fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
@@ -63,9 +78,30 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let Setup { config, track, vehicle } = Setup::load(DEFAULT, &[])?;
     tell(&format!("measuring, about {:.0} s", args.seconds));
     let time = Duration::from_secs_f64(args.seconds);
+    if args.parts || args.threads_model {
+        return model(args, &Setup { config, track, vehicle }, time);
+    }
     let figures = measure(&config, &track, &vehicle, Level::best(), threads(args.threads), time);
     let text = if args.json { serde_json::to_string_pretty(&report(&figures))? } else { table(&figures) };
     super::print(&text)?;
+    Ok(CommandEnd::Done)
+}
+
+/// Where training spends its time.
+fn model(args: &Args, setup: &Setup, time: Duration) -> anyhow::Result<CommandEnd> {
+    let Setup { config, track, vehicle } = setup;
+    let race = Race::new(&config.env, track, vehicle, config.seed);
+    let level = Level::best();
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let peak = one.install(|| peak::flops_per_s(level, time / 10));
+    let model = ThreadsModel::measure(config, &race, level, threads(args.threads), time.mul_f64(0.9));
+    let [rollout, epoch] = [0, 1].map(|epochs| training_flops_per_step(race.observations(), epochs));
+    let flops = (epoch - rollout) * (model.batch / config.ppo.minibatches) as f64;
+    let tables = [(args.parts, parts::parts(&model, flops, peak)), (args.threads_model, parts::threads(&model))];
+    super::print(&match args.json {
+        true => serde_json::to_string_pretty(&parts::document(&model))?,
+        false => tables.into_iter().filter(|(asked, _)| *asked).map(|(_, text)| text).collect::<Vec<_>>().join("\n\n"),
+    })?;
     Ok(CommandEnd::Done)
 }
 

@@ -2,8 +2,11 @@
 //!
 //! Every figure is steps of single vehicles a second, the best of several rounds, each long enough to time.
 
+pub mod threads;
+
 use crate::base::lane::{Kernel, LANES, Lane32, Level, dispatch, each};
 use crate::base::peak;
+use crate::base::stopwatch::best;
 use crate::learn::nn::{HIDDEN, TILE_BLOCKS};
 use crate::learn::policy::ACTIONS;
 use crate::learn::ppo::Environment;
@@ -18,7 +21,7 @@ use crate::race::env::Race;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::hint::black_box;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A figure on one thread and on all.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -132,19 +135,6 @@ pub fn measure(
         threads,
         simd: level.to_string(),
     }
-}
-
-/// Seconds of the fastest of the calls that fit into `time`, at least two.
-fn best<T>(time: Duration, mut work: impl FnMut() -> T) -> f64 {
-    let started = Instant::now();
-    let (mut best, mut rounds) = (f64::INFINITY, 0);
-    while rounds < 2 || started.elapsed() < time {
-        let begin = Instant::now();
-        black_box(work());
-        best = best.min(begin.elapsed().as_secs_f64());
-        rounds += 1;
-    }
-    best
 }
 
 fn physics(race: &Race, level: Level, threads: usize, steps: usize, time: Duration) -> f64 {

@@ -277,6 +277,22 @@ fn bench_has_the_keys_that_it_promises() {
 }
 
 #[test]
+fn bench_tells_the_parts_of_a_step_and_predicts_more_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = ["bench", "--parts", "--threads-model", "--seconds", "0.01", "--threads", "2"];
+    let text = racer(folder.path(), &options);
+    for part in ["Adam", "gather", "multiply-adds at the peak", "threads", "64"] {
+        assert!(text.out.contains(part), "{part}: {}{}", text.out, text.err);
+    }
+    let ran = racer(folder.path(), &[&options[..], &["--json"]].concat());
+    let figures: Value = serde_json::from_str(&ran.out).unwrap();
+    let predicted = figures["predicted"].as_array().unwrap();
+    assert_eq!((predicted.len(), &predicted[0]["threads"]), (7, &1.into()));
+    assert!(figures["step_parts_s"]["backward"].as_f64().unwrap() > 0.0, "{figures}");
+    assert_eq!(figures["chunks"], 4);
+}
+
+#[test]
 fn help_names_the_exit_codes() {
     let folder = tempfile::tempdir().unwrap();
     let ran = racer(folder.path(), &["--help"]);

@@ -1,6 +1,8 @@
 //! Loss and gradient of a chunk of a minibatch, in tiles whose activations stay in cache from the first layer's forward
 //! to the first layer's gradient.
 
+pub mod parts;
+
 use super::batch::Minibatch;
 use super::loss::{Samples, TERMS, Weights, loss};
 use crate::base::lane::{LANES, Lane, Real, build};

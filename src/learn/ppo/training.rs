@@ -6,6 +6,7 @@ use super::config::PpoConfig;
 use super::loss::Weights;
 use super::rollout::{Rollout, Tile, collect};
 use super::state::{TrainingState, rate_after};
+use super::update::parts::{self, StepParts};
 use super::update::{Hyper, Losses, Updater};
 use super::{Environment, Tally as _, gae};
 use crate::base::lane::Level;
@@ -14,6 +15,7 @@ use crate::learn::nn::adam::Adam;
 use crate::learn::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
+use std::time::Duration;
 
 /// What an iteration computed.
 pub struct Learnt {
@@ -163,33 +165,43 @@ impl<'a, E: Environment> Training<'a, E> {
         (1.0 - residual / total.max(1e-12), residual.sqrt())
     }
 
-    /// Rollout, advantages and all epochs of one iteration at `share` of the budget.
-    pub fn iterate(&mut self, share: f64) -> Learnt {
+    /// What the parts of an optimiser step cost, on a rollout of its own. The training is of no use afterwards.
+    pub fn parts(&mut self, time: Duration) -> StepParts {
+        self.collect(self.environment);
+        self.advantages();
+        let hyper = self.hyper(0.0);
+        let Self { level, rollout, advantages, returns, order, updater, network, config, .. } = self;
+        let batch = batch(rollout, advantages, returns);
+        let rows = &order[..order.len() / config.minibatches];
+        awake(|| parts::measure(updater, *level, network, &batch, rows, &hyper, time))
+    }
+
+    /// What the steps of an iteration depend on, at `share` of the budget.
+    fn hyper(&self, share: f64) -> Hyper {
         let c = self.config;
-        let penalty = c.penalty(share);
-        self.collect(&self.environment.with_penalties(penalty));
-        let (explained_variance, advantage_std) = self.advantages();
         let scheduled = c.learning_rate + (c.learning_rate_final - c.learning_rate) * share.clamp(0.0, 1.0);
-        let learning_rate = scheduled * rate_after(self.setbacks);
-        let hyper = Hyper {
+        Hyper {
             weights: Weights {
                 clip: c.clip,
                 entropy: c.entropy_at(share),
                 squashed: c.entropy_squashed,
-                magnitude: c.action_magnitude * penalty,
+                magnitude: c.action_magnitude * c.penalty(share),
                 value: c.value_coefficient,
             },
-            learning_rate,
+            learning_rate: scheduled * rate_after(self.setbacks),
             max_gradient_norm: c.max_gradient_norm,
             adam_epsilon: c.adam_epsilon,
-        };
-        let batch = Minibatch {
-            observations: &self.rollout.observations,
-            z: &self.rollout.z,
-            log_prob: &self.rollout.log_prob,
-            advantages: &self.advantages,
-            returns: &self.returns,
-        };
+        }
+    }
+
+    /// Rollout, advantages and all epochs of one iteration at `share` of the budget.
+    pub fn iterate(&mut self, share: f64) -> Learnt {
+        let c = self.config;
+        self.collect(&self.environment.with_penalties(c.penalty(share)));
+        let (explained_variance, advantage_std) = self.advantages();
+        let hyper = self.hyper(share);
+        let learning_rate = hyper.learning_rate;
+        let batch = batch(&self.rollout, &self.advantages, &self.returns);
         let (level, order, updater, network) = (self.level, &mut self.order, &mut self.updater, &mut self.network);
         let shuffles =
             (0..c.epochs).map(|epoch| self.rng.sequence(RngStream::Shuffle, epoch as u32, self.iterations as u32));
@@ -206,6 +218,11 @@ impl<'a, E: Environment> Training<'a, E> {
         self.iterations += 1;
         Learnt { losses, explained_variance, advantage_std, learning_rate }
     }
+}
+
+fn batch<'a>(rollout: &'a Rollout, advantages: &'a [f32], returns: &'a [f32]) -> Minibatch<'a, f32> {
+    let Rollout { observations, z, log_prob, .. } = rollout;
+    Minibatch { observations, z, log_prob, advantages, returns }
 }
 
 /// Variance, summed in order in double precision.

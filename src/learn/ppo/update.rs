@@ -3,6 +3,8 @@
 //! Work is cut into chunks of a fixed number of rows whatever the thread count, each with a gradient of its own, summed
 //! in order: one thread and many give the same bits.
 
+pub mod parts;
+
 use super::batch::Minibatch;
 use super::chunk::{Chunk, Job, Worker};
 use super::loss::{TERMS, Weights};

@@ -1,0 +1,139 @@
+//! What an optimiser step costs, part by part: each is repeated alone, on the calling thread.
+
+use super::{CHUNK_ROWS, Hyper, Updater};
+use crate::base::lane::{Kernel, LANES, Lane32, Level, dispatch};
+use crate::base::stopwatch::best;
+use crate::learn::nn::aligned::Aligned;
+use crate::learn::nn::{HIDDEN, Network, mlp};
+use crate::learn::ppo::batch::Minibatch;
+use crate::learn::ppo::chunk::parts::{self, TilePart};
+use crate::learn::ppo::chunk::{Chunk, Job, Worker};
+use std::time::Duration;
+
+/// Seconds of the parts of one step. They are measured apart, so that they add up to the step only about.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StepParts {
+    /// The step itself, on the current pool.
+    pub whole: f64,
+    /// Copying the minibatch's observations side by side.
+    pub gather: f64,
+    /// Both networks: products, tanh and heads.
+    pub forward: f64,
+    /// The forward pass's tanh alone, from memory to memory; in `forward` it is done on registers.
+    pub tanh: f64,
+    pub loss: f64,
+    pub backward: f64,
+    /// Transposes of the second layers' weights.
+    pub transpose: f64,
+    /// Sum of the chunks' gradients, and its norm.
+    pub sum: f64,
+    pub adam: f64,
+    /// Chunks that threads can share.
+    pub chunks: usize,
+}
+
+impl StepParts {
+    /// What one thread does while the others wait.
+    pub fn serial(&self) -> f64 {
+        self.transpose + self.sum + self.adam
+    }
+}
+
+/// What can be repeated alone.
+#[derive(Clone, Copy)]
+enum Part {
+    Tile(TilePart),
+    Tanh,
+    Transpose,
+    Sum,
+    Adam,
+}
+
+/// Measures for about `time`. `network` and the optimiser are changed.
+pub fn measure(
+    updater: &mut Updater<f32>,
+    level: Level,
+    network: &mut Network<f32>,
+    batch: &Minibatch<f32>,
+    rows: &[u32],
+    hyper: &Hyper,
+    time: Duration,
+) -> StepParts {
+    let each = time / 9;
+    let whole = best(each, || updater.step(level, network, batch, rows, hyper));
+    let mut worker = Worker::new(network);
+    let mut chunk = Chunk::new(network);
+    let mut turned = [Aligned::zeros(HIDDEN * HIDDEN), Aligned::zeros(HIDDEN * HIDDEN)];
+    let mut hidden = Aligned::zeros(4 * HIDDEN * rows.len() * LANES);
+    let share = 1.0 / (rows.len() * LANES) as f64;
+    let mut one = |part: Part| {
+        best(each, || {
+            let turned = &mut turned;
+            let at = PartAt { batch, rows, hyper, share, hidden: &mut hidden, turned, worker: &mut worker };
+            dispatch(level, RunPart { part, at, updater, network, gradient: &mut chunk.gradient })
+        })
+    };
+    let [transpose, gather, forward] =
+        [Part::Transpose, Part::Tile(TilePart::Gather), Part::Tile(TilePart::Forward)].map(&mut one);
+    StepParts {
+        whole,
+        gather,
+        forward,
+        tanh: one(Part::Tanh),
+        loss: one(Part::Tile(TilePart::Loss)),
+        backward: one(Part::Tile(TilePart::ForwardAndBackward)) - forward,
+        transpose,
+        sum: one(Part::Sum),
+        adam: one(Part::Adam),
+        chunks: rows.len().div_ceil(CHUNK_ROWS),
+    }
+}
+
+struct PartAt<'a> {
+    batch: &'a Minibatch<'a, f32>,
+    rows: &'a [u32],
+    hyper: &'a Hyper,
+    share: f64,
+    hidden: &'a mut [f32],
+    turned: &'a mut [Aligned<f32>; 2],
+    worker: &'a mut Worker<f32>,
+}
+
+struct RunPart<'a> {
+    part: Part,
+    at: PartAt<'a>,
+    updater: &'a mut Updater<f32>,
+    network: &'a mut Network<f32>,
+    gradient: &'a mut [f32],
+}
+
+impl Kernel for RunPart<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lane32>(self) {
+        let Self { part, at, updater, network, gradient } = self;
+        let PartAt { batch, rows, hyper, share, hidden, turned, worker } = at;
+        match part {
+            Part::Tile(part) => {
+                let job = Job { network, turned, batch, weights: &hyper.weights, share };
+                parts::run::<L>(part, &job, rows, worker, gradient);
+            }
+            Part::Tanh => L::vectorize(
+                #[inline(always)]
+                || hidden.chunks_exact_mut(LANES).for_each(|h| L::from_slice(h).tanh().write(h)),
+            ),
+            Part::Transpose => {
+                for (shape, turned) in [&network.actor, &network.critic].into_iter().zip(turned) {
+                    L::vectorize(
+                        #[inline(always)]
+                        || mlp::turn::<L>(shape, &network.parameters, turned),
+                    );
+                }
+            }
+            Part::Sum => {
+                updater.reduce::<L>(network, hyper.weights.entropy);
+            }
+            Part::Adam => updater.descend::<L>(network, hyper, 1.0),
+        }
+    }
+}
