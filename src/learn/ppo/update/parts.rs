@@ -41,7 +41,7 @@ impl StepParts {
 
 /// What can be repeated alone.
 #[derive(Clone, Copy)]
-enum Part {
+enum StepPart {
     Tile(TilePart),
     Tanh,
     Transpose,
@@ -66,7 +66,7 @@ pub fn measure(
     let mut turned = [Aligned::zeros(HIDDEN * HIDDEN), Aligned::zeros(HIDDEN * HIDDEN)];
     let mut hidden = Aligned::zeros(4 * HIDDEN * rows.len() * LANES);
     let share = 1.0 / (rows.len() * LANES) as f64;
-    let mut one = |part: Part| {
+    let mut one = |part: StepPart| {
         best(each, || {
             let turned = &mut turned;
             let at = PartAt { batch, rows, hyper, share, hidden: &mut hidden, turned, worker: &mut worker };
@@ -74,17 +74,17 @@ pub fn measure(
         })
     };
     let [transpose, gather, forward] =
-        [Part::Transpose, Part::Tile(TilePart::Gather), Part::Tile(TilePart::Forward)].map(&mut one);
+        [StepPart::Transpose, StepPart::Tile(TilePart::Gather), StepPart::Tile(TilePart::Forward)].map(&mut one);
     StepParts {
         whole,
         gather,
         forward,
-        tanh: one(Part::Tanh),
-        loss: one(Part::Tile(TilePart::Loss)),
-        backward: one(Part::Tile(TilePart::ForwardAndBackward)) - forward,
+        tanh: one(StepPart::Tanh),
+        loss: one(StepPart::Tile(TilePart::Loss)),
+        backward: one(StepPart::Tile(TilePart::ForwardAndBackward)) - forward,
         transpose,
-        sum: one(Part::Sum),
-        adam: one(Part::Adam),
+        sum: one(StepPart::Sum),
+        adam: one(StepPart::Adam),
         chunks: rows.len().div_ceil(CHUNK_ROWS),
     }
 }
@@ -100,7 +100,7 @@ struct PartAt<'a> {
 }
 
 struct RunPart<'a> {
-    part: Part,
+    part: StepPart,
     at: PartAt<'a>,
     updater: &'a mut Updater<f32>,
     network: &'a mut Network<f32>,
@@ -114,15 +114,15 @@ impl Kernel for RunPart<'_> {
         let Self { part, at, updater, network, gradient } = self;
         let PartAt { batch, rows, hyper, share, hidden, turned, worker } = at;
         match part {
-            Part::Tile(part) => {
+            StepPart::Tile(part) => {
                 let job = Job { network, turned, batch, weights: &hyper.weights, share };
                 parts::run::<L>(part, &job, rows, worker, gradient);
             }
-            Part::Tanh => L::vectorize(
+            StepPart::Tanh => L::vectorize(
                 #[inline(always)]
                 || hidden.chunks_exact_mut(LANES).for_each(|h| L::from_slice(h).tanh().write(h)),
             ),
-            Part::Transpose => {
+            StepPart::Transpose => {
                 for (shape, turned) in [&network.actor, &network.critic].into_iter().zip(turned) {
                     L::vectorize(
                         #[inline(always)]
@@ -130,10 +130,10 @@ impl Kernel for RunPart<'_> {
                     );
                 }
             }
-            Part::Sum => {
+            StepPart::Sum => {
                 updater.reduce::<L>(network, hyper.weights.entropy);
             }
-            Part::Adam => updater.descend::<L>(network, hyper, 1.0),
+            StepPart::Adam => updater.descend::<L>(network, hyper, 1.0),
         }
     }
 }
