@@ -1,5 +1,7 @@
 //! `racer pilot`: a policy flies a vehicle over a link, in real time.
 
+mod rehearse;
+
 use super::{CommandEnd, interrupt, tell};
 use crate::base::check::BadInput;
 use crate::base::fsio::Reserved;
@@ -21,11 +23,11 @@ use std::sync::mpsc::sync_channel;
 #[command(after_help = HELP)]
 pub struct Args {
     /// A run folder (its best policy), a snapshot file, or `latest` for the youngest run below runs/
-    #[arg(value_name = "RUN|SNAPSHOT|latest")]
-    policy: String,
+    #[arg(value_name = "RUN|SNAPSHOT|latest", required_unless_present = "excite")]
+    policy: Option<String>,
     /// Where states come from: udp:PORT (racer's own packets), or mavlink:LINK
-    #[arg(long = "in", value_name = "SOURCE")]
-    input: String,
+    #[arg(long = "in", value_name = "SOURCE", required_unless_present = "rehearse")]
+    input: Option<String>,
     /// Where setpoints go: udp:HOST:PORT, mavlink:LINK, or msp:LINK [default: back to where states come from]
     #[arg(long = "out", value_name = "SINK")]
     output: Option<String>,
@@ -45,6 +47,8 @@ pub struct Args {
     /// New file for the log of the flight (MCAP), which `check` and `replay` read
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
+    #[command(flatten)]
+    rehearsal: rehearse::Args,
 }
 
 const HELP: &str = "The policy is given the vehicle when a fresh state shows it at rest on the track's start pad and \
@@ -57,20 +61,28 @@ and draws the states.
 Examples:
   racer pilot latest --in udp:9101 --out udp:127.0.0.1:9102 --laps 3 --log flight.mcap
   racer pilot latest --in mavlink:udp:14540 --switch offboard --laps 3
-  racer pilot latest --in udp:9101 --out msp:/dev/ttyACM0 --switch rc:8 --laps 3";
+  racer pilot latest --in udp:9101 --out msp:/dev/ttyACM0 --switch rc:8 --laps 3
+  racer pilot latest --rehearse betaflight --firmware betaflight_SITL --laps 10 --log rehearsal.mcap
+  racer pilot --rehearse betaflight --firmware betaflight_SITL --excite 120 --log excited.mcap";
 
 /// Periods that motors are given to arm and to spin up: a second.
 const LEAD: u32 = 100;
 
 /// Waits, flies, reports.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
+    let policy = args.policy.as_deref().map(|policy| anyhow::Ok(Snapshot::read(&run::find(policy)?.snapshot)?));
+    let Some(source) = args.input.as_deref() else {
+        let Args { laps, seconds, ref log, .. } = *args;
+        let asked = rehearse::Asked { policy: policy.transpose()?, laps, seconds, log: log.as_deref() };
+        return rehearse::run(&args.rehearsal, asked);
+    };
     let route = Route::of(&Wishes {
-        source: &args.input,
+        source,
         sink: args.output.as_deref(),
         switch: args.switch.as_deref(),
         arm: args.arm.map(usize::from),
     })?;
-    let snapshot = Snapshot::read(&run::find(&args.policy)?.snapshot)?;
+    let Some(snapshot) = policy.transpose()? else { unreachable!("asked for by the arguments") };
     let file = args.log.as_deref().map(Reserved::new).transpose()?;
     let range = snapshot.ranges();
     let Snapshot { network, about } = snapshot;
@@ -89,7 +101,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let sink = args.output.as_deref().unwrap_or("the same link");
     tell(&format!(
         "{} in {}; states from {}, setpoints to {sink}",
-        mission.track.name, mission.vehicle.name, args.input
+        mission.track.name, mission.vehicle.name, source
     ));
     let mut user = User { key: &interrupt::asked, told: &mut |phase, reason| tell(&phase_line(phase, reason)) };
     let timing = pace::fly(&mut live, &mut lines, &arrived, args.seconds, &mut user);

@@ -22,6 +22,7 @@ pub mod route;
 pub mod switch;
 
 use crate::learn::nn::Network;
+use crate::model::constants::CONTROL_S;
 use crate::model::track::Track;
 use crate::model::vehicle::Vehicle;
 use crate::race::env::observe::OBSERVATIONS;
@@ -60,6 +61,8 @@ pub struct Live<'a> {
     pub record: Record,
     /// Gates passed in flight.
     pub gates: u32,
+    /// When they were, s, interpolated within the period.
+    pub passes: Vec<f64>,
     /// Age of the estimate that an answer was made of, s.
     pub ages: Histogram,
 }
@@ -76,6 +79,7 @@ impl<'a> Live<'a> {
             link: Link::default(),
             record: Record::default(),
             gates: 0,
+            passes: Vec::new(),
             ages: Histogram::default(),
         }
     }
@@ -103,6 +107,7 @@ impl<'a> Live<'a> {
         if (before, self.machine.phase) == (Phase::Ready, Phase::Flying) {
             self.memory = Memory::before(0, AT_START);
             self.gates = 0;
+            self.passes.clear();
         }
         let setpoint = self.flying_step(now_s, age_s);
         let Machine { phase, reason, .. } = self.machine;
@@ -118,7 +123,10 @@ impl<'a> Live<'a> {
         let answer = onboard.step(&sight.estimate);
         self.memory = onboard.memory;
         self.ages.add(age_s);
-        self.gates += u32::from(answer.crossing == Crossing::Passed);
+        if answer.crossing == Crossing::Passed {
+            self.gates += 1;
+            self.passes.push(now_s - CONTROL_S * (1.0 - f64::from(answer.fraction)));
+        }
         let laps = self.mission.laps.map(|laps| laps * self.around.gates.len() as u32 + 1);
         let end = match answer.crossing {
             Crossing::Missed => Some(Reason::MissedGate),

@@ -6,7 +6,6 @@ use super::Stream;
 pub const MOTORS: usize = 8;
 
 /// A row of the numbers of the first motors; of others NaN.
-#[cfg(any(test, feature = "internals"))]
 pub fn row(numbers: &[f64]) -> [f64; MOTORS] {
     std::array::from_fn(|k| numbers.get(k).copied().unwrap_or(f64::NAN))
 }

@@ -1,0 +1,259 @@
+//! `racer pilot --rehearse`: a flight on the ground, through a flight controller's own firmware.
+
+use super::super::{CommandEnd, interrupt, print, tell};
+use crate::base::check::{BadInput, Check};
+use crate::base::fsio::Reserved;
+use crate::base::lane::Level;
+use crate::base::stats::mean;
+use crate::flight::fly;
+use crate::flight::instruments::Instruments;
+use crate::flight::live::phase::Reason;
+use crate::flight::live::{Live, Mission};
+use crate::flight::open::open_bytes;
+use crate::flight::pilot::{Pilot, PilotLimits};
+use crate::flight::rehearse::airframe::Airframe;
+use crate::flight::rehearse::betaflight::settings;
+use crate::flight::rehearse::clock::Clock;
+use crate::flight::rehearse::firmware::Firmware;
+use crate::flight::rehearse::plant::Plant;
+use crate::flight::rehearse::{Ports, Rehearsal, STEP_S, Wire, flown};
+use crate::flight::sensors::SensorConfig;
+use crate::flight::{Log, Options, write};
+use crate::model::vehicle::Vehicle;
+use crate::race::onboard::Surroundings;
+use crate::race::snapshot::Snapshot;
+use anyhow::Context;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// Options of a rehearsal.
+#[derive(Debug, clap::Args)]
+#[group(skip)]
+#[command(next_help_heading = "Rehearsal")]
+pub struct Args {
+    /// Fly a simulated vehicle through the real firmware of a flight controller
+    #[arg(long, value_name = "FIRMWARE", requires = "firmware", conflicts_with_all = ["input", "output"])]
+    pub rehearse: Option<Kind>,
+    /// The firmware's own simulator build
+    #[arg(long, value_name = "PATH", requires = "rehearse")]
+    firmware: Option<PathBuf>,
+    /// Your own command lines for the firmware, such as its `diff all`; racer sets rates, arming and log over them
+    #[arg(long, value_name = "FILE", requires = "rehearse")]
+    settings: Option<PathBuf>,
+    /// The vehicle that is flown: a name or a file [default: the policy's own; seed_class for the pilot]
+    #[arg(long, value_name = "NAME|FILE", requires = "rehearse")]
+    vehicle: Option<String>,
+    /// Its inertia about x, y, z, kg m2 [default: of an even ellipsoid with the drag's semi-axes]
+    #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', requires = "rehearse")]
+    inertia: Option<Vec<f64>>,
+    /// From its centre of mass to a rotor, m [default: the drag's longer horizontal semi-axis]
+    #[arg(long, value_name = "M", requires = "rehearse")]
+    arm: Option<f64>,
+    /// Torque of a rotor over its thrust, m [default: 0.016]
+    #[arg(long, value_name = "M", requires = "rehearse")]
+    torque: Option<f64>,
+    /// Sensors of firmware and log: a name or a file, as in `racer fly`
+    #[arg(long, value_name = "NAME|FILE", default_value = "typical", requires = "rehearse")]
+    sensors: String,
+    /// Fly the manoeuvres that identification needs instead of a policy, for so many seconds
+    #[arg(long, value_name = "SECONDS", requires = "rehearse", conflicts_with_all = ["policy", "laps"])]
+    pub excite: Option<f64>,
+    /// Where the random numbers of sensors and manoeuvres start
+    #[arg(long, default_value_t = 1, requires = "rehearse")]
+    seed: u64,
+    /// Whose time it goes by: `lockstep` gives the firmware racer's (Linux, needs `cc`), `wall` is real time
+    #[arg(long, value_name = "CLOCK", default_value = "lockstep", requires = "rehearse")]
+    clock: Time,
+    /// New file for the firmware's own blackbox log
+    #[arg(long, value_name = "FILE", requires = "rehearse")]
+    blackbox: Option<PathBuf>,
+}
+
+/// Firmwares that can be rehearsed with.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum Kind {
+    Betaflight,
+}
+
+/// See [`Clock`].
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Time {
+    Lockstep,
+    Wall,
+}
+
+/// What `racer pilot` itself was asked for.
+pub struct Asked<'a> {
+    pub policy: Option<Snapshot>,
+    pub laps: Option<u32>,
+    pub seconds: f64,
+    pub log: Option<&'a Path>,
+}
+
+const LAPS: u32 = 3;
+/// How much a firmware's clock may go wrong before the user is told.
+const DRIFT: f64 = 0.01;
+
+/// Sets up, flies, reports.
+pub fn run(args: &Args, asked: Asked) -> anyhow::Result<CommandEnd> {
+    let sensors = SensorConfig::load(&args.sensors)?;
+    let own = asked.policy.as_ref().map_or("seed_class".to_string(), |p| p.about.vehicle.name.clone());
+    let vehicle = match (&args.vehicle, &asked.policy) {
+        (Some(name), _) => Vehicle::load(name)?,
+        (None, Some(policy)) => policy.about.vehicle.clone(),
+        (None, None) => Vehicle::load(&own)?,
+    };
+    let [log, blackbox] = [asked.log, args.blackbox.as_deref()].map(|path| path.map(Reserved::new).transpose());
+    let (log, blackbox) = (log?, blackbox?);
+    interrupt::watch("ending the flight; Ctrl-C again ends at once");
+    let full_rate = match &asked.policy {
+        Some(policy) => Surroundings::of(&policy.about.track, &policy.about.vehicle).full_rate,
+        None => vehicle.max_rates_rad_s(),
+    };
+    let flight = Flight { args, vehicle: &vehicle, sensors: &sensors, full_rate };
+    let (rehearsal, firmware, end) = match &asked.policy {
+        Some(policy) => flight.by_policy(policy, &asked)?,
+        None => flight.by_pilot(args.excite.unwrap_or(asked.seconds))?,
+    };
+    remarks(&rehearsal, &firmware);
+    for (file, bytes) in [(log, Some(write::mcap(&rehearsal.log)?)), (blackbox, firmware.blackbox())] {
+        match (file, bytes) {
+            (Some(file), Some(bytes)) => tell(&format!("written to {}", file.write(&bytes)?.display())),
+            (Some(_), None) => tell("the firmware wrote no blackbox log"),
+            (None, _) => {}
+        }
+    }
+    Ok(end)
+}
+
+/// A flight that is set up.
+struct Flight<'a> {
+    args: &'a Args,
+    vehicle: &'a Vehicle,
+    sensors: &'a SensorConfig,
+    full_rate: [f64; 3],
+}
+
+impl<'a> Flight<'a> {
+    /// The firmware, and the vehicle on its pad.
+    fn begin(&self, position: [f64; 3], heading: f64) -> anyhow::Result<(Rehearsal<'a>, Firmware)> {
+        let Args { firmware, settings: own, clock, seed, .. } = self.args;
+        let clock = match clock {
+            Time::Lockstep => Clock::lockstep()?,
+            Time::Wall => Clock::wall(),
+        };
+        let airframe = self.airframe()?;
+        let own = own.as_ref().map_or(Ok(String::new()), |path| {
+            std::fs::read_to_string(path)
+                .map_err(|error| BadInput::new(path.display(), error, "command lines of the firmware", ""))
+        })?;
+        let path = firmware.as_deref().unwrap_or(Path::new(""));
+        let wire = Wire::new(Ports::BETAFLIGHT, clock)?;
+        let firmware = Firmware::start(path, &own, &settings(self.full_rate), &wire.clock)?;
+        for line in &firmware.refused {
+            tell(&format!("the firmware refuses a setting: {line}"));
+        }
+        let attitude = [(0.5 * heading).cos(), 0.0, 0.0, (0.5 * heading).sin()];
+        let plant = Plant::new(self.vehicle, airframe, STEP_S, position, attitude);
+        let instruments = Instruments::new(self.sensors, *seed);
+        Ok((Rehearsal::new(plant, wire, instruments, self.vehicle.mass_kg, self.full_rate), firmware))
+    }
+
+    /// Derived from the vehicle, but for what was given.
+    fn airframe(&self) -> Result<Airframe, BadInput> {
+        let mut airframe = Airframe::of(self.vehicle);
+        if let Some(inertia) = &self.args.inertia {
+            airframe.inertia_kg_m2 = inertia.as_slice().try_into().map_err(|_| {
+                BadInput::new("--inertia", format!("{} numbers", inertia.len()), "three, as 0.002,0.002,0.004", "")
+            })?;
+        }
+        airframe.arm_m = self.args.arm.unwrap_or(airframe.arm_m);
+        airframe.torque_m = self.args.torque.unwrap_or(airframe.torque_m);
+        airframe.check().map_err(|invalid| BadInput::at("--inertia, --arm, --torque", invalid))?;
+        Ok(airframe)
+    }
+
+    fn by_policy(&self, policy: &Snapshot, asked: &Asked) -> anyhow::Result<(Rehearsal<'a>, Firmware, CommandEnd)> {
+        let about = &policy.about;
+        let laps = asked.laps.unwrap_or(LAPS);
+        let forecast = forecast(policy, laps as usize);
+        let (track, network) = (about.track.clone(), policy.network.clone());
+        let own = about.vehicle.clone();
+        let mission = Mission { network, range: policy.ranges(), track, vehicle: own, laps: Some(laps), lead: 0 };
+        let around = Surroundings::of(&mission.track, &mission.vehicle);
+        let mut live = Live::new(&mission, &around);
+        let start = &mission.track.start;
+        let (mut rehearsal, firmware) = self.begin(start.position_m, start.heading_rad())?;
+        tell(&format!("{} trained in {}, flown in {}", about.track.name, about.vehicle.name, self.vehicle.name));
+        flown::by_policy(&mut rehearsal, &mut live, self.full_rate, asked.seconds, &interrupt::asked)
+            .with_context(|| firmware.last_words())?;
+        let crossings: Vec<f64> = live.passes.iter().step_by(mission.track.gates.len()).copied().collect();
+        let flown: Vec<f64> = crossings.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        print(&summary(&forecast, &flown, live.gates, live.machine.reason))?;
+        let done = live.machine.reason == Some(Reason::LapsDone);
+        Ok((rehearsal, firmware, if done { CommandEnd::Done } else { CommandEnd::NotMet }))
+    }
+
+    fn by_pilot(&self, seconds: f64) -> anyhow::Result<(Rehearsal<'a>, Firmware, CommandEnd)> {
+        fly::check_pilot("--excite", seconds)?;
+        let battery = &self.vehicle.battery;
+        let limits = PilotLimits {
+            max_rate_rad_s: self.full_rate,
+            hover_command: self.vehicle.hover_command(0.5 * (battery.full_v + battery.empty_v)),
+            seconds,
+            empty_v: battery.empty_v,
+        };
+        let mut pilot = Pilot::new(self.args.seed, limits);
+        let (mut rehearsal, firmware) = self.begin([0.0; 3], 0.0)?;
+        flown::by_pilot(&mut rehearsal, &mut pilot, self.full_rate, seconds, &interrupt::asked)
+            .with_context(|| firmware.last_words())?;
+        let end = if rehearsal.plant.resting { CommandEnd::Done } else { CommandEnd::NotMet };
+        let landed = if rehearsal.plant.resting { "landed" } else { "not landed" };
+        print(&format!("flown      {:.1} s, {landed}", rehearsal.time_s()))?;
+        Ok((rehearsal, firmware, end))
+    }
+}
+
+/// Lap times of the policy in its own vehicle, s.
+fn forecast(policy: &Snapshot, laps: usize) -> Vec<f64> {
+    let sensors = SensorConfig::load("ideal").ok();
+    let seconds = policy.about.eval.max_steps as f64 * 0.01 * (laps + 1) as f64;
+    let race = policy.race(None);
+    let flight = sensors.map(|s| fly::by_policy(Level::best(), &race, &policy.network, &s, 1, seconds.min(3600.0)));
+    flight.map_or(Vec::new(), |flight| flight.laps.into_iter().take(laps).collect())
+}
+
+fn summary(forecast: &[f64], flown: &[f64], gates: u32, end: Option<Reason>) -> String {
+    let mut text = String::from("lap   forecast      flown\n");
+    for lap in 0..forecast.len().max(flown.len()) {
+        let cell = |times: &[f64]| times.get(lap).map_or("-".to_string(), |time| format!("{time:.3} s"));
+        let _ = writeln!(text, "{:<5}{:>9}{:>11}", lap + 1, cell(forecast), cell(flown));
+    }
+    let both = forecast.len().min(flown.len());
+    if both > 0 {
+        let [expected, found] = [forecast, flown].map(|times| mean(&times[..both]));
+        let share = 100.0 * (found / expected - 1.0);
+        let _ = writeln!(text, "mean {expected:>9.3} s{found:>9.3} s  ({share:+.1} % of the forecast)");
+    }
+    let _ = write!(text, "gates {gates} passed; ended: {}", end.map_or("", Reason::text));
+    text
+}
+
+/// What the user should know of clocks and settings.
+fn remarks(rehearsal: &Rehearsal, firmware: &Firmware) {
+    if let Some([late, all]) = rehearsal.late()
+        && late > 0
+    {
+        tell(&format!("{late} of {all} steps were late: real time was not kept, and lap times mean less"));
+    }
+    let span = |log: &Log| log.imu.time_s.last().zip(log.imu.time_s.first()).map_or(0.0, |(last, first)| last - first);
+    let blackbox = firmware.blackbox();
+    let logged = blackbox.and_then(|bytes| open_bytes(Path::new("blackbox.bfl"), &bytes, Options::default()).ok());
+    if let Some(logged) = logged.filter(|_| span(&rehearsal.log) > 5.0) {
+        // It logs the second before as well.
+        let ratio = span(&logged.log) / (span(&rehearsal.log) + 1.0);
+        if (ratio - 1.0).abs() > DRIFT {
+            tell(&format!("the firmware's clock shows {ratio:.3} s a second: its filters and lags are off by as much"));
+        }
+    }
+}
