@@ -99,10 +99,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let mut live = Live::new(&mission, &around);
     interrupt::watch("handing back; Ctrl-C again ends at once");
     let sink = args.output.as_deref().unwrap_or("the same link");
-    tell(&format!(
-        "{} in {}; states from {}, setpoints to {sink}",
-        mission.track.name, mission.vehicle.name, source
-    ));
+    tell(&format!("{} in {}; states from {}, setpoints to {sink}", mission.track.name, mission.vehicle.name, source));
     let mut user = User { key: &interrupt::asked, told: &mut |phase, reason| tell(&phase_line(phase, reason)) };
     let timing = pace::fly(&mut live, &mut lines, &arrived, args.seconds, &mut user);
     super::print(&summary(&live, &timing))?;

@@ -1,6 +1,6 @@
 //! A simulated vehicle's sensors at work: what they read of it, into a log.
 
-use crate::base::rng::{Philox, Sequence, RngStream};
+use crate::base::rng::{Philox, RngStream, Sequence};
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Stream};
 use crate::model::attitude::{Quaternion, body_axes, compose, dot, normalized, small_rotation};

@@ -123,6 +123,7 @@ effects! {
         ocv_curve::OcvCurve
         voltage_compensation::VoltageCompensation
         throttle_offset::ThrottleOffset
+        mixer_room::MixerRoom
         mixer_thrust_loss::MixerThrustLoss
         thrust_fade::ThrustFade
         ground_effect::GroundEffect

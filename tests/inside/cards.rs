@@ -69,7 +69,7 @@ fn passages() -> Vec<Passage> {
         (v[3], v[4]) = (s.polarisation, s.drop);
     };
     let thrust_input: fn(&[f64], &mut [f64]) = |k, v| {
-        let mut s = ThrustInput { command: v[0], voltage: v[1], middle_v: v[2] };
+        let mut s = ThrustInput { command: v[0], voltage: v[1], middle_v: v[2], rate_error: v[3] };
         effects::thrust_input(&values(k), &mut s);
         (v[0], v[1]) = (s.command, s.voltage);
     };

@@ -249,11 +249,10 @@ fn remarks(rehearsal: &Rehearsal, firmware: &Firmware) {
     let span = |log: &Log| log.imu.time_s.last().zip(log.imu.time_s.first()).map_or(0.0, |(last, first)| last - first);
     let blackbox = firmware.blackbox();
     let logged = blackbox.and_then(|bytes| open_bytes(Path::new("blackbox.bfl"), &bytes, Options::default()).ok());
-    if let Some(logged) = logged.filter(|_| span(&rehearsal.log) > 5.0) {
-        // It logs the second before as well.
-        let ratio = span(&logged.log) / (span(&rehearsal.log) + 1.0);
-        if (ratio - 1.0).abs() > DRIFT {
-            tell(&format!("the firmware's clock shows {ratio:.3} s a second: its filters and lags are off by as much"));
-        }
+    let spans = logged.map(|logged| (span(&logged.log), span(&rehearsal.log)));
+    // It logs from when it is armed, and has first to write a header.
+    if let Some((logged, flown)) = spans.filter(|(logged, flown)| (logged - flown).abs() > 2.0 + DRIFT * flown) {
+        let off = "its filters and lags are off by as much";
+        tell(&format!("the firmware's clock shows {logged:.1} s in {flown:.1} s of flight: {off}"));
     }
 }

@@ -5,7 +5,7 @@ use super::betaflight::{Sticks, full_rates};
 use crate::base::error::Result;
 use crate::flight::live::Live;
 use crate::flight::live::heard::{Heard, Sight};
-use crate::flight::live::phase::Phase;
+use crate::flight::live::phase::{Phase, Reason};
 use crate::flight::pilot::{Pilot, Seen};
 use crate::model::constants::CONTROL_S;
 use crate::race::onboard::{Estimate, Setpoint};
@@ -23,7 +23,7 @@ pub fn by_policy(
     key: &dyn Fn() -> bool,
 ) -> Result<()> {
     rehearsal.arm()?;
-    for number in 0.. {
+    loop {
         let (now_s, actual) = (rehearsal.time_s(), rehearsal.actual());
         let estimate = Estimate {
             position: actual.position.map(|x| x as f32),
@@ -33,14 +33,15 @@ pub fn by_policy(
             voltage: actual.voltage as f32,
         };
         // The switch is held from the moment that the policy is ready.
-        let switch = live.machine.phase != Phase::Waiting;
-        live.receive(&state(&Sight { number, time_us: (1e6 * now_s) as u64, estimate, switch }), now_s);
+        let held = live.machine.phase != Phase::Waiting;
+        live.receive(Heard::Switch { held, for_s: 1.0 }, now_s);
+        live.receive(Heard::State(Sight { time_us: (1e6 * now_s) as u64, estimate }), now_s);
         let answer = live.tick(now_s, key() || now_s > most_s);
         if answer.phase == Phase::Ended {
             break;
         }
         if answer.phase == Phase::Waiting && now_s > 1.0 {
-            live.machine.end(answer.reason.unwrap_or(crate::flight::live::phase::Reason::NoState));
+            live.machine.end(answer.reason.unwrap_or(Reason::NoState));
             break;
         }
         let sticks = answer.setpoint.map_or(IDLE, |setpoint| sticks(&setpoint, full_rate));

@@ -5,8 +5,9 @@ use super::rates::TAUS_S;
 use super::solve::{Solution, Unknown, solve};
 use crate::base::stats::{Score, mean};
 use crate::flight::series::held;
+use crate::insight::criteria::identified::{CALM, CALM_LEAST};
 use crate::insight::estimate::range::TIME_CONSTANT_S;
-use crate::insight::prepare::data::{Data, DataPart};
+use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::insight::prepare::flight::PreparedFlight;
 use crate::insight::prepare::rotors::columns;
 use crate::model::vehicle::identified::RotorChain;
@@ -26,10 +27,16 @@ pub struct Mixer {
 }
 
 /// Fits the mean motor output to the collective command. `None` where a flight lacks either, or where the command does
-/// not reach the motors. What the mixer moves for rates is taken for noise that outliers do not rule.
+/// not reach the motors. A mixer that makes room for turns moves the mean output up near closed throttle and down near
+/// full: where the flight is long enough, only what is calm is fitted, else that is noise that outliers do not rule.
 pub fn fit(data: &Data, part: DataPart, by_voltage: bool) -> Option<Mixer> {
     let outputs = data.flights.iter().map(output).collect::<Option<Vec<_>>>()?;
-    let chosen = data.choose(part, |f, i| outputs[f][i].is_finite() && data.flights[f].time[i].is_finite());
+    let known = |f: usize, i: usize| outputs[f][i].is_finite() && data.flights[f].time[i].is_finite();
+    let calm = data.signals(calm);
+    let [all, calm] = [&|_, _| true, &|f: usize, i: usize| calm[f][i] > 0.0] as [&dyn Fn(usize, usize) -> bool; 2];
+    let [all, calm] = [all, calm].map(|also| data.choose(part, |f, i| known(f, i) && also(f, i)));
+    let count = |chosen: &Chosen| chosen.iter().map(Vec::len).sum::<usize>() as f64;
+    let chosen = if count(&calm) > CALM_LEAST.get() * count(&all) { calm } else { all };
     let voltage = |f: &PreparedFlight| if by_voltage { f.voltage.clone() } else { vec![0.0; f.time.len()] };
     let volts = Data::pick(&data.signals(voltage), &chosen);
     let middle = mean(&volts);
@@ -66,6 +73,17 @@ pub fn fit(data: &Data, part: DataPart, by_voltage: bool) -> Option<Mixer> {
         ..RotorChain::DIRECT
     };
     (score.r2 > 0.0 && !solution.at_bound[GAIN]).then_some(Mixer { chain, solution, score })
+}
+
+/// 1 where the rates are near their setpoints, else 0.
+fn calm(flight: &PreparedFlight) -> Vec<f64> {
+    let mut behind = vec![0.0; flight.time.len()];
+    for axis in 0..3 {
+        let (wanted, measured) = (flight.response(axis, TAUS_S[0], 0.0), flight.measured(axis));
+        let most = wanted.iter().map(|rate| rate.abs()).fold(1e-3, f64::max);
+        behind.iter_mut().zip(wanted.iter().zip(&measured)).for_each(|(b, (w, m))| *b += (w - m).abs() / most);
+    }
+    behind.into_iter().map(|b| if b < CALM.get() { 1.0 } else { 0.0 }).collect()
 }
 
 /// Mean motor output on the IMU's clock, 0..1.
