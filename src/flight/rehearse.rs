@@ -16,7 +16,7 @@ use crate::flight::instruments::{Actual, Instruments};
 use crate::flight::{Log, VehicleKind, VehicleRecord, motors};
 use crate::model::constants::CONTROL_S;
 use betaflight::{MOTORS_BYTES, MOTORS_PORT, STATE_PORT, STICKS_PORT, Sticks};
-use clock::Clock;
+use clock::SharedClock;
 use plant::Plant;
 use std::net::UdpSocket;
 
@@ -38,16 +38,16 @@ impl Ports {
 
 /// Sockets to a firmware, and a common clock.
 #[derive(Debug)]
-pub struct Wire {
+pub struct FirmwareWire {
     out: UdpSocket,
     motors: UdpSocket,
     ports: Ports,
-    pub clock: Clock,
+    pub clock: SharedClock,
 }
 
-impl Wire {
+impl FirmwareWire {
     /// Takes the ports. Fails where another simulator has them.
-    pub fn new(ports: Ports, clock: Clock) -> Result<Self> {
+    pub fn new(ports: Ports, clock: SharedClock) -> Result<Self> {
         let bind = |port: u16| {
             UdpSocket::bind(("127.0.0.1", port)).map_err(|error| {
                 Error::Failed(format!("UDP port {port}: {error}; end the other simulator or firmware that has it"))
@@ -79,7 +79,7 @@ impl Wire {
 pub struct Rehearsal<'a> {
     pub plant: Plant,
     pub log: Log,
-    wire: Wire,
+    wire: FirmwareWire,
     instruments: Instruments<'a>,
     /// What each motor is sent, 0..1.
     motors: [f64; 4],
@@ -89,7 +89,13 @@ pub struct Rehearsal<'a> {
 
 impl<'a> Rehearsal<'a> {
     /// At rest; the log is of a vehicle of that mass (kg) whose full command asks for those rates (rad/s).
-    pub fn new(plant: Plant, wire: Wire, instruments: Instruments<'a>, mass_kg: f64, full_rate: [f64; 3]) -> Self {
+    pub fn new(
+        plant: Plant,
+        wire: FirmwareWire,
+        instruments: Instruments<'a>,
+        mass_kg: f64,
+        full_rate: [f64; 3],
+    ) -> Self {
         let vehicle = VehicleRecord {
             mass_kg: Some(mass_kg),
             max_rate_rad_s: Some(full_rate),

@@ -24,6 +24,7 @@ mod python;
 mod quality;
 mod race;
 mod reference;
+mod rehearse;
 mod replay;
 mod resume;
 mod round_trip;

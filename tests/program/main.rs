@@ -12,6 +12,7 @@ mod kills;
 mod library;
 mod pilot;
 mod predict;
+mod rehearse;
 mod show;
 mod study;
 #[path = "../support/mod.rs"]

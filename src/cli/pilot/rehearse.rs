@@ -13,10 +13,10 @@ use crate::flight::open::open_bytes;
 use crate::flight::pilot::{Pilot, PilotLimits};
 use crate::flight::rehearse::airframe::Airframe;
 use crate::flight::rehearse::betaflight::settings;
-use crate::flight::rehearse::clock::Clock;
+use crate::flight::rehearse::clock::SharedClock;
 use crate::flight::rehearse::firmware::Firmware;
 use crate::flight::rehearse::plant::Plant;
-use crate::flight::rehearse::{Ports, Rehearsal, STEP_S, Wire, flown};
+use crate::flight::rehearse::{FirmwareWire, Ports, Rehearsal, STEP_S, flown};
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Options, write};
 use crate::model::vehicle::Vehicle;
@@ -48,7 +48,7 @@ pub struct Args {
     inertia: Option<Vec<f64>>,
     /// From its centre of mass to a rotor, m [default: the drag's longer horizontal semi-axis]
     #[arg(long, value_name = "M", requires = "rehearse")]
-    arm: Option<f64>,
+    arm_length: Option<f64>,
     /// Torque of a rotor over its thrust, m [default: 0.016]
     #[arg(long, value_name = "M", requires = "rehearse")]
     torque: Option<f64>,
@@ -63,7 +63,7 @@ pub struct Args {
     seed: u64,
     /// Whose time it goes by: `lockstep` gives the firmware racer's (Linux, needs `cc`), `wall` is real time
     #[arg(long, value_name = "CLOCK", default_value = "lockstep", requires = "rehearse")]
-    clock: Time,
+    clock: ClockKind,
     /// New file for the firmware's own blackbox log
     #[arg(long, value_name = "FILE", requires = "rehearse")]
     blackbox: Option<PathBuf>,
@@ -75,9 +75,9 @@ pub enum Kind {
     Betaflight,
 }
 
-/// See [`Clock`].
+/// See [`SharedClock`].
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Time {
+enum ClockKind {
     Lockstep,
     Wall,
 }
@@ -139,8 +139,8 @@ impl<'a> Flight<'a> {
     fn begin(&self, position: [f64; 3], heading: f64) -> anyhow::Result<(Rehearsal<'a>, Firmware)> {
         let Args { firmware, settings: own, clock, seed, .. } = self.args;
         let clock = match clock {
-            Time::Lockstep => Clock::lockstep()?,
-            Time::Wall => Clock::wall(),
+            ClockKind::Lockstep => SharedClock::lockstep()?,
+            ClockKind::Wall => SharedClock::wall(),
         };
         let airframe = self.airframe()?;
         let own = own.as_ref().map_or(Ok(String::new()), |path| {
@@ -148,7 +148,7 @@ impl<'a> Flight<'a> {
                 .map_err(|error| BadInput::new(path.display(), error, "command lines of the firmware", ""))
         })?;
         let path = firmware.as_deref().unwrap_or(Path::new(""));
-        let wire = Wire::new(Ports::BETAFLIGHT, clock)?;
+        let wire = FirmwareWire::new(Ports::BETAFLIGHT, clock)?;
         let firmware = Firmware::start(path, &own, &settings(self.full_rate), &wire.clock)?;
         for line in &firmware.refused {
             tell(&format!("the firmware refuses a setting: {line}"));
@@ -167,9 +167,9 @@ impl<'a> Flight<'a> {
                 BadInput::new("--inertia", format!("{} numbers", inertia.len()), "three, as 0.002,0.002,0.004", "")
             })?;
         }
-        airframe.arm_m = self.args.arm.unwrap_or(airframe.arm_m);
+        airframe.arm_m = self.args.arm_length.unwrap_or(airframe.arm_m);
         airframe.torque_m = self.args.torque.unwrap_or(airframe.torque_m);
-        airframe.check().map_err(|invalid| BadInput::at("--inertia, --arm, --torque", invalid))?;
+        airframe.check().map_err(|invalid| BadInput::at("--inertia, --arm-length, --torque", invalid))?;
         Ok(airframe)
     }
 

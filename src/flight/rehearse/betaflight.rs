@@ -1,6 +1,6 @@
 //! What Betaflight's simulator build is sent and sends, over UDP on this machine, and how it is set up.
 //!
-//! Read in its source (`src/platform/SIMULATOR`, 2026.12): a state is 18 doubles, sticks are a double and 16 u16, motors
+//! Read in its source (its platform SIMULATOR, 2026.12): a state is 18 doubles, sticks are a double and 16 u16, motors
 //! come as a u16, two bytes of nothing and 16 floats; all in this machine's byte order. The time in a state is never
 //! changed, so that the firmware's clock goes as fast as the clock it is given ([`super::clock`]).
 
@@ -76,8 +76,8 @@ fn tens(rate: f64) -> f64 {
     (rate.to_degrees() / 10.0 - 1e-9).ceil().clamp(1.0, 199.0)
 }
 
-/// Command lines for a firmware whose sticks are to be rates of at most `wanted` (rad/s) and throttle, straight, and that
-/// logs its flight.
+/// Command lines for a firmware whose sticks are to be rates of at most `wanted` (rad/s) and throttle, straight, and
+/// that logs its flight.
 pub fn settings(wanted: [f64; 3]) -> String {
     let mut out = String::from(
         "feature -GPS

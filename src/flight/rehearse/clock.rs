@@ -20,7 +20,7 @@ const ANSWER_S: f64 = 10.0;
 
 /// See the module.
 #[derive(Debug)]
-pub enum Clock {
+pub enum SharedClock {
     Lockstep {
         /// Where the firmware's clock says that time is used up, or sticks are taken.
         told: UdpSocket,
@@ -33,11 +33,16 @@ pub enum Clock {
     },
 }
 
-impl Clock {
+impl SharedClock {
     /// Lockstep, where the firmware's clock, or a test, speaks to that port.
     pub fn lockstep() -> Result<Self> {
+        Self::lockstep_within(ANSWER_S)
+    }
+
+    /// The same with another longest wait, s.
+    pub fn lockstep_within(longest_s: f64) -> Result<Self> {
         let told = UdpSocket::bind(("127.0.0.1", 0)).map_err(|error| Error::Failed(format!("no socket: {error}")))?;
-        let wait = Some(Duration::from_secs_f64(ANSWER_S));
+        let wait = Some(Duration::from_secs_f64(longest_s));
         told.set_read_timeout(wait).map_err(|error| Error::Failed(error.to_string()))?;
         Ok(Self::Lockstep { told })
     }

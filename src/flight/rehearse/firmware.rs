@@ -1,6 +1,6 @@
 //! The firmware's own simulator build as a process, in a folder of its own that goes with it.
 
-use super::clock::Clock;
+use super::clock::SharedClock;
 use crate::base::check::BadInput;
 use crate::base::error::{Error, Result};
 use std::fs::{self, File};
@@ -24,7 +24,7 @@ const REFUSED: &str = "###ERROR";
 impl Firmware {
     /// Sets up and starts the program at `path`: with the `user`'s own command lines first, `settings` over them, and
     /// the time of `clock`.
-    pub fn start(path: &Path, user: &str, settings: &str, clock: &Clock) -> Result<Self> {
+    pub fn start(path: &Path, user: &str, settings: &str, clock: &SharedClock) -> Result<Self> {
         let refuse = |found: String| {
             let advice = "build it with `make TARGET=SITL` in Betaflight's sources (docs/flying.md)";
             BadInput::new(format!("--firmware {}", path.display()), found, "Betaflight's simulator build", advice)

@@ -13,8 +13,8 @@ use crate::race::onboard::{Estimate, Setpoint};
 /// Periods that the firmware has for closing its log after it was disarmed.
 const AFTER: usize = 50;
 
-/// The policy's flight from the pad to its end, with the onboard code of `racer pilot`. `key` says whether the user asks
-/// for an end; `most_s` ends it, too.
+/// The policy's flight from the pad to its end, with the onboard code of `racer pilot`. `key` says whether the user
+/// asks for an end; `most_s` ends it, too.
 pub fn by_policy(
     rehearsal: &mut Rehearsal,
     live: &mut Live,

@@ -1,9 +1,9 @@
 //! The vehicle motor by motor: the simulator's equations with four rotors in place of the rate loop, which a flight
 //! controller closes.
 //!
-//! Each rotor takes its own command with the thrust's lag and gives a quarter of the thrust curve. Their sum is flown as
-//! the one collective command of the same thrust, so that forces, drag, battery and motion are the simulator's own. Of a
-//! vehicle's effects, those on the way from a setpoint to body rates are the flight controller's and play no part.
+//! Each rotor takes its own command with the thrust's lag and gives a quarter of the thrust curve. Their sum is flown
+//! as the one collective command of the same thrust, so that forces, drag, battery and motion are the simulator's own.
+//! Of a vehicle's effects, those on the way from a setpoint to body rates are the flight controller's and play no part.
 
 use super::airframe::Airframe;
 use crate::base::lane::build;

@@ -13,9 +13,9 @@ criteria! {
     DRAG_RATIO = 30.0, Assumed("frames with ducts come to ten; more would be a sheet");
     /// Rate below which motor outputs and rotor speeds are not used, Hz.
     ROTOR_RATE_HZ = 50.0, Assumed("rotors answer within tens of milliseconds");
-    /// Rates behind their setpoints, summed over the axes as shares of the largest setpoints, below which a mixer leaves
-    /// the collective alone.
-    CALM = 0.1, Assumed("Betaflight 2026.12 in a rehearsal: mean motor output off by 0.00 to 0.02 below, up to 0.4 above");
+    /// Rates behind their setpoints, summed over the axes as shares of the largest setpoints, below which a mixer
+    /// leaves the collective alone.
+    CALM = 0.1, Assumed("Betaflight, rehearsed: mean motor output off by 0.00 to 0.02 below, up to 0.4 above");
     /// Share of a flight that has to be calm for what is not to be left out.
     CALM_LEAST = 0.1, Assumed("a tenth of five minutes is as much flight as identification asks for");
     /// Rate setpoints beyond the full-stick rate that was taken for the vehicle's, as a share, that contradict it.

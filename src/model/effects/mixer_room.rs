@@ -1,9 +1,9 @@
 //! Room that a mixer makes for turns: the throttle s stays between k e and 1 - k e, and so near the middle in sharp
 //! turns, with e the sum over the axes of |command - response|.
 //!
-//! Motors can be neither slower than stopped nor faster than full. A flight controller that keeps its turns all the same
-//! (Betaflight calls that airmode) moves all of them together: more thrust than asked for near closed throttle, less
-//! near full.
+//! Motors can be neither slower than stopped nor faster than full. A flight controller that keeps its turns all the
+//! same (Betaflight calls that airmode) moves all of them together: more thrust than asked for near closed throttle,
+//! less near full.
 
 use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, ThrustInput};
 use crate::base::lane::Real;
@@ -20,7 +20,7 @@ impl Effect for MixerRoom {
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::RateError],
         channels: &[ResidualChannel::Force],
-        signature: "vertical specific force is pulled to that of half throttle while the rates are behind their commands",
+        signature: "vertical specific force is that of half throttle while the rates are behind their commands",
         rivals: &["mixer_thrust_loss", "rate_thrust_coupling"],
         manoeuvre: ("sharp turns at closed and at full throttle", &["rate-steps", "punch-turns"]),
         ..Card::BLANK
