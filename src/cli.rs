@@ -67,7 +67,7 @@ Exit codes:
   1    something failed on the way, such as a full disk
   2    bad input: nothing was started
   3    a flight log is damaged; its readable part was used
-  4    `--require` was not met
+  4    `--require` was not met, or a rehearsal did not complete its laps
   5    `--fail-on-effect` found an effect
   6    `racer check` found what stops identification and diagnosis
   130  stopped by Ctrl-C";

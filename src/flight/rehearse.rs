@@ -54,7 +54,7 @@ impl FirmwareWire {
             })
         };
         // Firmwares share their ports without a word, and then each gets some of the packets.
-        if clock.port().is_none() || ports.state == STATE_PORT {
+        if ports.state == STATE_PORT {
             [ports.state, ports.sticks].into_iter().try_for_each(|port| bind(port).map(drop))?;
         }
         let (out, motors) = (bind(0)?, bind(ports.motors)?);
@@ -135,7 +135,7 @@ impl<'a> Rehearsal<'a> {
         Ok(())
     }
 
-    /// A control period with the sticks held there. `Sticks` go out before the state, as a radio's packet would.
+    /// A control period with the sticks held there.
     pub fn hold(&mut self, sticks: &Sticks) -> Result<()> {
         self.wire.send(&sticks.bytes(), self.wire.ports.sticks);
         self.wire.clock.after_sticks()?;
