@@ -121,9 +121,9 @@ effects! {
         voltage_sag::VoltageSag
         voltage_relaxation::VoltageRelaxation
         ocv_curve::OcvCurve
+        mixer_room::MixerRoom
         voltage_compensation::VoltageCompensation
         throttle_offset::ThrottleOffset
-        mixer_room::MixerRoom
         mixer_thrust_loss::MixerThrustLoss
         thrust_fade::ThrustFade
         ground_effect::GroundEffect

@@ -109,7 +109,15 @@ fn passages() -> Vec<Passage> {
         (vec![own(RateCommand, 3), own(ThrustCommand, 2), own(RateCommand, 4), fixed(1)], actuator),
         (vec![own(BodyRates, 3), input(ThrustCommand, 1)], body_rates),
         (vec![input(ThrustCommand, 1), fixed(1), input(Voltage, 1), own(Voltage, 2)], battery),
-        (vec![changes(ThrustCommand, SpecificForce, 1), changes(Voltage, SpecificForce, 1), fixed(1)], thrust_input),
+        (
+            vec![
+                changes(ThrustCommand, SpecificForce, 1),
+                changes(Voltage, SpecificForce, 1),
+                fixed(1),
+                input(RateError, 1),
+            ],
+            thrust_input,
+        ),
         (vec![fixed(9), changes(Velocity, SpecificForce, 3)], wind),
         (
             vec![

@@ -66,8 +66,8 @@ fn with_equal_motors_it_moves_as_the_simulator_does() {
         let (actual, state) = (plant.actual(), craft.state);
         let off = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
         assert!(state.velocity[2].abs() > 1.0, "{name}: it does move");
-        assert!(off(actual.position, state.position) < 2e-3, "{name}: {actual:?} {state:?}");
-        assert!(off(actual.velocity, state.velocity) < 2e-3, "{name}: {actual:?} {state:?}");
+        assert!(off(actual.position, state.position) < 5e-3, "{name}: {actual:?} {state:?}");
+        assert!(off(actual.velocity, state.velocity) < 5e-3, "{name}: {actual:?} {state:?}");
         assert!(off(actual.specific_force, craft.specific_force()) < 2e-2, "{name}");
         assert!((actual.voltage - craft.terminal_voltage()).abs() < 1e-6, "{name}");
     }

@@ -3,7 +3,7 @@
 //!
 //! Motors can be neither slower than stopped nor faster than full. A flight controller that keeps its turns all the
 //! same (Betaflight calls that airmode) moves all of them together: more thrust than asked for near closed throttle,
-//! less near full.
+//! less near full. It comes before what moves the command out of -1..1, which a size of 0 would else cut off.
 
 use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, ThrustInput};
 use crate::base::lane::Real;
