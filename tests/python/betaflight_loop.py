@@ -82,9 +82,10 @@ def main():
                              *firmware)
             forecast, flown, ended = flight(text)
             both = min(len(forecast), len(flown))
-            means = [sum(times[:both]) / both if both else float("nan") for times in (forecast, flown)]
-            rows.append([name, seed, args.steps, f"{means[0]:.3f}", f"{means[1]:.3f}",
-                         f"{means[1] / means[0]:.3f}" if both else "", len(flown), int(code == 0), ended,
+            mean = [f"{sum(times[:both or None]) / len(times[:both or None]):.3f}" if times else ""
+                    for times in (forecast, flown)]
+            share = f"{float(mean[1]) / float(mean[0]):.3f}" if both else ""
+            rows.append([name, seed, args.steps, *mean, share, len(flown), int(code == 0), ended,
                          " ".join(f"{lap:.3f}" for lap in flown)])
             with open(args.out / "loop.csv", "w", newline="") as file:
                 csv.writer(file, lineterminator="\n").writerows([HEADER, *rows])
