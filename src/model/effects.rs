@@ -121,7 +121,6 @@ effects! {
         voltage_sag::VoltageSag
         voltage_relaxation::VoltageRelaxation
         ocv_curve::OcvCurve
-        mixer_room::MixerRoom
         voltage_compensation::VoltageCompensation
         throttle_offset::ThrottleOffset
         mixer_thrust_loss::MixerThrustLoss

@@ -69,7 +69,7 @@ fn passages() -> Vec<Passage> {
         (v[3], v[4]) = (s.polarisation, s.drop);
     };
     let thrust_input: fn(&[f64], &mut [f64]) = |k, v| {
-        let mut s = ThrustInput { command: v[0], voltage: v[1], middle_v: v[2], rate_error: v[3] };
+        let mut s = ThrustInput { command: v[0], voltage: v[1], middle_v: v[2] };
         effects::thrust_input(&values(k), &mut s);
         (v[0], v[1]) = (s.command, s.voltage);
     };
@@ -109,15 +109,7 @@ fn passages() -> Vec<Passage> {
         (vec![own(RateCommand, 3), own(ThrustCommand, 2), own(RateCommand, 4), fixed(1)], actuator),
         (vec![own(BodyRates, 3), input(ThrustCommand, 1)], body_rates),
         (vec![input(ThrustCommand, 1), fixed(1), input(Voltage, 1), own(Voltage, 2)], battery),
-        (
-            vec![
-                changes(ThrustCommand, SpecificForce, 1),
-                changes(Voltage, SpecificForce, 1),
-                fixed(1),
-                input(RateError, 1),
-            ],
-            thrust_input,
-        ),
+        (vec![changes(ThrustCommand, SpecificForce, 1), changes(Voltage, SpecificForce, 1), fixed(1)], thrust_input),
         (vec![fixed(9), changes(Velocity, SpecificForce, 3)], wind),
         (
             vec![

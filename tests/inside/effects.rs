@@ -357,7 +357,6 @@ fn forces_follow_the_equations() {
     let fade: f64 = 60.0 / 300.0;
     for (id, k, more) in [
         ("mixer_thrust_loss", 0.1, [0.0, 0.0, -0.1 * error * lift]),
-        ("mixer_room", 0.55, [0.0, 0.0, specific_thrust(&compact.thrust, 1.0 - 1.1 * error, 23.0) - lift]),
         ("thrust_fade", 0.08, [0.0, 0.0, -0.08 * fade * lift]),
         ("ground_effect", 10.0, [0.0, 0.0, 10.0 * (0.0635_f64 / (4.0 * height)).powi(2) * lift]),
         ("propwash", 0.3, [0.0, 0.0, -0.3 * wake * lift]),

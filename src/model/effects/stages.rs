@@ -71,8 +71,6 @@ pub struct ThrustInput<R> {
     pub voltage: R,
     /// Half way between full and empty, V.
     pub middle_v: R,
-    /// Sum over the axes of |command - response|, each as a share of the maximum rate.
-    pub rate_error: R,
 }
 
 /// Motion through the air.

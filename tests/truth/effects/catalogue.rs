@@ -56,7 +56,6 @@ pub const CATALOGUE: &[Entry] = &[
     entry_of("translational_lift", "k", "1/m", 0.003, 0.03, false),
     entry_of("propwash", "k", "", 0.08, 0.33, false),
     entry_of("ground_effect", "k", "", 1.0, 12.0, false),
-    entry_of("mixer_room", "k", "", 0.1, 0.5, false),
     entry_of("mixer_thrust_loss", "k", "", 0.02, 0.1, false),
     entry_of("rate_thrust_coupling", "k", "m/s2 per (rad/s)2", 0.002, 0.02, false),
     entry_of("thrust_fade", "k", "", 0.02, 0.08, false),

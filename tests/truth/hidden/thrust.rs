@@ -39,18 +39,9 @@ pub fn change(craft: &Craft, world: &World, command: f64) -> f64 {
 
 /// Thrust over mass without flow, m/s2.
 pub fn standing(craft: &Craft, world: &World, time: f64) -> f64 {
-    turning(craft, world, time, 0.0)
-}
-
-/// The same while the rates are so far behind what is wanted, summed over the axes as shares of full rates.
-fn turning(craft: &Craft, world: &World, time: f64, effort: f64) -> f64 {
     let terms = &world.terms;
     let volts = battery::of_thrust(craft, world, time);
-    // Motors are neither slower than stopped nor faster than full.
-    let room = (terms.mixer_room * effort).min(0.5);
-    let throttle = (0.5 + 0.5 * craft.u).max(room).min(1.0 - room);
-    let command = if room > 0.0 { 2.0 * throttle - 1.0 } else { craft.u };
-    let mut thrust = per_mass(&world.vehicle, command + 2.0 * terms.throttle_offset, volts);
+    let mut thrust = per_mass(&world.vehicle, craft.u + 2.0 * terms.throttle_offset, volts);
     thrust *= 1.0 - terms.fade * time / FADE_S;
     if let Some([loss, tau]) = terms.heat {
         thrust *= 1.0 - loss * (1.0 - (-time / tau).exp());
@@ -64,9 +55,7 @@ fn turning(craft: &Craft, world: &World, time: f64, effort: f64) -> f64 {
 /// Thrust over mass in flight, m/s2.
 pub fn flying(craft: &Craft, world: &World, flow: &Flow) -> f64 {
     let terms = &world.terms;
-    let max_rate = Vector3::from(world.vehicle.max_rate);
-    let effort = (flow.wanted - flow.rates).component_div(&max_rate).map(f64::abs).sum();
-    let mut thrust = turning(craft, world, flow.time, effort);
+    let mut thrust = standing(craft, world, flow.time);
     if terms.momentum > 0.0 {
         thrust = inflow::thrust(thrust, flow.air, terms.momentum);
     }
@@ -76,6 +65,8 @@ pub fn flying(craft: &Craft, world: &World, flow: &Flow) -> f64 {
     let height = craft.position.z.max(0.0) + STANDING_M;
     thrust *= 1.0 + terms.ground_effect * (ROTOR_M / (4.0 * height)).powi(2);
     if terms.mixer_loss > 0.0 {
+        let max_rate = Vector3::from(world.vehicle.max_rate);
+        let effort = (flow.wanted - flow.rates).component_div(&max_rate).map(f64::abs).sum();
         thrust *= (1.0 - terms.mixer_loss * effort).max(0.0);
     }
     thrust -= terms.rate_thrust * flow.rates.xy().norm_squared();

@@ -154,7 +154,7 @@ pub fn force<R: Real>(p: &Extended<R>, at: &ForceInputs<R>) -> [R; 3] {
     let values = &p.values;
     let half = R::of(0.5);
     let middle_v = (p.full_v + p.empty_v) * half;
-    let mut input = ThrustInput { command: at.command, voltage: at.voltage, middle_v, rate_error: at.rate_error };
+    let mut input = ThrustInput { command: at.command, voltage: at.voltage, middle_v };
     effects::thrust_input(values, &mut input);
     let mut wind = RelativeWind { axes: at.axes, velocity: at.velocity };
     effects::relative_wind(values, &mut wind);
