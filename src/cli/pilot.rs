@@ -25,10 +25,11 @@ pub struct Args {
     /// A run folder (its best policy), a snapshot file, or `latest` for the youngest run below runs/
     #[arg(value_name = "RUN|SNAPSHOT|latest", required_unless_present = "excite")]
     policy: Option<String>,
-    /// Where states come from: udp:PORT (racer's own packets), or mavlink:LINK
+    /// Where states come from: udp:PORT (racer's own packets), mavlink:LINK, or ros2:/NAMESPACE
     #[arg(long = "in", value_name = "SOURCE", required_unless_present = "rehearse")]
     input: Option<String>,
-    /// Where setpoints go: udp:HOST:PORT, mavlink:LINK, or msp:LINK [default: back to where states come from]
+    /// Where setpoints go: udp:HOST:PORT, mavlink:LINK, msp:LINK, or ros2:/NAMESPACE [default: back to where they
+    /// come from]
     #[arg(long = "out", value_name = "SINK")]
     output: Option<String>,
     /// The dead man's switch: offboard (armed, and in the mode that takes setpoints), rc:CHANNEL (held above 1700 us),

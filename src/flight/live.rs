@@ -18,6 +18,7 @@ pub mod phase;
 pub mod port;
 pub mod protocol;
 mod record;
+pub mod ros2;
 pub mod route;
 pub mod switch;
 

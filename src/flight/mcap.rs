@@ -5,7 +5,7 @@
 
 mod bytes;
 mod cdr;
-mod cdr_input;
+pub(super) mod cdr_input;
 mod chunk;
 mod column;
 mod decoder;

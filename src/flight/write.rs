@@ -1,8 +1,8 @@
 //! Logs written in the canonical form: MCAP with ROS 2 messages in CDR and the definitions that any ROS tool reads them
 //! by.
 
-mod cdr;
-mod message;
+pub(super) mod cdr;
+pub(super) mod message;
 mod topic;
 
 use super::mcap::vehicle;

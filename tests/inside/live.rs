@@ -4,6 +4,7 @@
 mod faults;
 mod mavlink;
 mod msp;
+mod ros2;
 
 use crate::support::feed::feed;
 use crate::support::tongue::{ALL, Speech, Told, Tongue};
@@ -36,7 +37,7 @@ pub fn spoken() -> Vec<Vec<u8>> {
     let estimate =
         Estimate { position: [1.0; 3], velocity: [2.0; 3], attitude: LEVEL, body_rates: [3.0; 3], voltage: 24.0 };
     let told = Told { time_us: 1 << 33, estimate, switch: true };
-    let mut all: Vec<_> = ALL.iter().map(|speech| Tongue::new(*speech, [10.0; 3]).encode(&told)).collect();
+    let mut all: Vec<_> = ALL.iter().flat_map(|speech| Tongue::new(*speech, [10.0; 3]).encode(&told)).collect();
     all.push(msp::channels_read_back());
     all
 }
@@ -46,7 +47,7 @@ proptest! {
     #[test]
     fn whatever_arrives_is_heard_without_a_panic(
         bytes in vec(any::<u8>(), 0..600),
-        which in 0..5usize,
+        which in 0..8usize,
         changes in vec((any::<Index>(), any::<u8>()), 0..6),
     ) {
         feed("links", &bytes);
@@ -102,7 +103,9 @@ fn a_lost_a_doubled_and_an_unusable_state_are_bridged_and_counted() {
         let (live, answer, _) = flown(&mission, &around, 500, Tongue::new(speech, around.full_rate), &fault);
         assert_eq!(answer.reason, Some(Reason::LapsDone), "{speech:?}: {:?}", live.link);
         let link = &live.link;
-        assert!(link.unusable >= 10 && link.foreign >= 20 && link.lost >= 10, "{speech:?}: {link:?}");
+        assert!(link.unusable >= 10 && link.foreign >= 20, "{speech:?}: {link:?}");
+        // Topics have no numbers.
+        assert!(link.lost >= 10 || speech == Speech::Topics, "{speech:?}: {link:?}");
         // A state in parts that comes twice has no newer part.
         assert!(link.late >= 10 || speech == Speech::Parts, "{speech:?}: {link:?}");
     }

@@ -43,7 +43,7 @@ fn flown(mut child: Child, mut tongue: Tongue, send: &dyn Fn(&[u8]), hear: &dyn 
         assert!(begun.elapsed() < Duration::from_secs(60), "it has not ended");
         // Released long enough after the first answer that the pilot is ready.
         let told = peer.told(answered.is_some_and(|at: Instant| at.elapsed() > Duration::from_secs(1)));
-        send(&tongue.encode(&told));
+        tongue.encode(&told).iter().for_each(|piece| send(piece));
         while let Some(bytes) = hear() {
             answered = answered.or(Some(Instant::now()));
             setpoint = tongue.obeyed(&bytes).or(setpoint);

@@ -13,6 +13,7 @@ use racer::flight::live::msp::Msp;
 use racer::flight::live::packets::Packets;
 use racer::flight::live::phase::Phase;
 use racer::flight::live::protocol::Protocol;
+use racer::flight::live::ros2::Ros2;
 use racer::flight::live::switch::Switch;
 use racer::flight::mapping::Mapping;
 use racer::flight::open::{Options, open_bytes};
@@ -57,10 +58,11 @@ pub fn feed(reader: &str, bytes: &[u8]) -> bool {
 fn links(bytes: &[u8]) -> bool {
     let duty = Duty { source: true, sink: true };
     let switch = Some(Switch::Channel(8));
-    let mut all: [Box<dyn Protocol>; 3] = [
+    let mut all: [Box<dyn Protocol>; 4] = [
         Box::new(Packets::new(true, true)),
         Box::new(Mavlink::new(switch, duty)),
         Box::new(Msp::new(switch, [10.0; 3], Some(5))),
+        Box::new(Ros2::new(Some(Switch::Offboard), duty)),
     ];
     let mut read = false;
     for protocol in &mut all {
@@ -68,7 +70,7 @@ fn links(bytes: &[u8]) -> bool {
             let now_s = 0.01 * i as f64;
             let heard = protocol.hear(piece, now_s);
             assert!(heard.len() <= 600 + 2 * piece.len(), "{} of {}", heard.len(), piece.len());
-            read |= heard.iter().any(|heard| matches!(heard, Heard::State(_) | Heard::Switch { .. }));
+            read |= heard.iter().any(|heard| !matches!(heard, Heard::Foreign | Heard::Lost(_)));
             let answer = Answer { phase: Phase::Ready, reason: None, armed: false, time_us: 0, setpoint: None };
             assert!(protocol.say(&answer, now_s).len() < 1024);
         }

@@ -1,6 +1,8 @@
 //! The languages that a simulated vehicle speaks: its states as bytes, and what it takes from bytes. Frames are turned
 //! here by matrices, not as the program does.
 
+mod topics;
+
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 use racer::flight::live::answer::Answer;
 use racer::flight::live::duty::Duty;
@@ -11,6 +13,7 @@ use racer::flight::live::mavlink::message::{self, Payload};
 use racer::flight::live::msp::Msp;
 use racer::flight::live::packets::{self, Packets};
 use racer::flight::live::protocol::Protocol;
+use racer::flight::live::ros2::Ros2;
 use racer::flight::live::switch::Switch;
 use racer::race::onboard::Estimate;
 
@@ -31,9 +34,11 @@ pub enum Speech {
     Parts,
     /// racer's packets in, sticks out.
     Sticks,
+    /// Topics of mavros, and its mode as the switch.
+    Topics,
 }
 
-pub const ALL: [Speech; 4] = [Speech::Packets, Speech::Odometry, Speech::Parts, Speech::Sticks];
+pub const ALL: [Speech; 5] = [Speech::Packets, Speech::Odometry, Speech::Parts, Speech::Sticks, Speech::Topics];
 
 /// A language with what is remembered of what was said.
 pub struct Tongue {
@@ -58,19 +63,21 @@ impl Tongue {
             Speech::Odometry => Box::new(Mavlink::new(Some(Switch::Offboard), both)),
             Speech::Parts => Box::new(Mavlink::new(Some(Switch::Channel(CHANNEL)), both)),
             Speech::Sticks => Box::new(Packets::new(true, false)),
+            Speech::Topics => Box::new(Ros2::new(Some(Switch::Offboard), both)),
         };
         let sink = (speech == Speech::Sticks).then(|| Box::new(Msp::new(None, full_rate, None)) as Box<dyn Protocol>);
         Self { speech, source, sink, full_rate, number: 0, sticks: None }
     }
 
-    /// A state as it is sent.
-    pub fn encode(&mut self, told: &Told) -> Vec<u8> {
+    /// A state as it is sent, in one piece or several.
+    pub fn encode(&mut self, told: &Told) -> Vec<Vec<u8>> {
         let messages = match self.speech {
             Speech::Packets | Speech::Sticks => {
                 self.number += 1;
                 let sight = Sight { time_us: told.time_us, estimate: told.estimate };
-                return packets::state(self.number, &sight, told.switch);
+                return vec![packets::state(self.number, &sight, told.switch)];
             }
+            Speech::Topics => return topics::messages(told),
             Speech::Odometry => vec![
                 (message::HEARTBEAT, heartbeat(told.switch)),
                 (message::BATTERY_STATUS, battery_status(told.estimate.voltage)),
@@ -92,20 +99,22 @@ impl Tongue {
             out.extend(frame(self.number as u8, VEHICLE, id, &payload));
             self.number += 1;
         }
-        out
+        vec![out]
     }
 
     /// The same, damaged where the state stands.
-    pub fn damaged(&mut self, told: &Told) -> Vec<u8> {
-        let mut bytes = self.encode(told);
+    pub fn damaged(&mut self, told: &Told) -> Vec<Vec<u8>> {
+        let mut pieces = self.encode(told);
+        let bytes = pieces.last_mut().unwrap();
         match self.speech {
             Speech::Packets | Speech::Sticks => drop(bytes.pop()),
             Speech::Odometry | Speech::Parts => {
                 let last = bytes.len() - 9;
                 bytes[last] ^= 0x40;
             }
+            Speech::Topics => bytes.truncate(bytes.len() / 2),
         }
-        bytes
+        pieces
     }
 
     /// What is sent for an answer.
@@ -127,6 +136,7 @@ impl Tongue {
                 let float = |at: usize| f32::from_le_bytes(std::array::from_fn(|i| bytes[at + i]));
                 (bytes[20] == 1).then(|| ([float(24), float(28), float(32)], float(36)))
             }
+            Speech::Topics => topics::target(bytes).filter(|target| *target != ([0.0; 3], 0.0)),
             Speech::Odometry | Speech::Parts => target(bytes).filter(|target| *target != ([0.0, -0.0, -0.0], 0.0)),
             Speech::Sticks => {
                 let Some(sticks) = sticks(bytes) else { return self.sticks };

@@ -1,5 +1,6 @@
 //! Where a link ends: the part of a name behind its protocol.
 
+use super::ros2::Topic;
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::PathBuf;
 
@@ -12,6 +13,12 @@ pub enum Endpoint {
     Tcp(SocketAddr),
     /// A serial line, and its speed where it has one.
     Serial(PathBuf, Option<u32>),
+    /// Topics of ROS 2 below a namespace: those that are listened to, and the one that is written.
+    Topics {
+        namespace: String,
+        heard: Vec<Topic>,
+        told: Topic,
+    },
 }
 
 impl Endpoint {

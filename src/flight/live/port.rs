@@ -1,5 +1,7 @@
 //! Ports: where bytes of a link come in and go out. What arrives comes by a channel, with its time.
 
+#[cfg(feature = "ros2")]
+mod dds;
 mod serial;
 
 use super::endpoint::Endpoint;
@@ -51,6 +53,13 @@ pub fn open(
             .map_err(|error| refuse(error, "an address that packets can be sent to", "look at the network")),
         Endpoint::Tcp(address) => connected(*address, to)
             .map_err(|error| refuse(error, "a program that answers there", "start the peer before the pilot")),
+        #[cfg(feature = "ros2")]
+        Endpoint::Topics { namespace, heard, told } => dds::open(namespace, heard, *told, to)
+            .map_err(|error| refuse(error, "a domain of DDS", "look at ROS_DOMAIN_ID and at the network")),
+        #[cfg(not(feature = "ros2"))]
+        Endpoint::Topics { .. } => {
+            Err(refuse(ErrorKind::Unsupported.into(), "a racer with ROS 2", "cargo build --release --features ros2"))
+        }
         Endpoint::Serial(path, baud) => {
             serial::open(path, *baud).and_then(|file| stream(file.try_clone()?, file, to)).map_err(|error| {
                 refuse(error, "a serial line", "look whether it is plugged in, and whether you may use it")
@@ -64,22 +73,32 @@ struct Inbox {
     to: SyncSender<Arrival>,
 }
 
+impl Inbox {
+    /// Puts in what arrived now; what finds no place is lost. An error where nobody reads any more.
+    fn put(&self, bytes: Vec<u8>) -> Result<(), Gone> {
+        match self.to.try_send(Arrival { line: self.line, at: Instant::now(), bytes }) {
+            Err(TrySendError::Disconnected(_)) => Err(Gone),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Nobody reads the inbox any more.
+struct Gone;
+
 /// Hands on what `read` gives, until the other end or this program has gone. `stream` is whether nothing is the end.
 fn listen(inbox: Inbox, stream: bool, mut read: impl FnMut(&mut [u8]) -> io::Result<usize> + Send + 'static) {
     std::thread::spawn(move || {
         let mut bytes = [0; DATAGRAM];
         loop {
-            let read = read(&mut bytes);
-            let at = Instant::now();
-            let length = match read {
+            let length = match read(&mut bytes) {
                 Ok(0) if stream => break,
                 Ok(length) => length,
                 // What was sent to a port where nobody listens comes back as an error of the next reading.
                 Err(error) if matches!(error.kind(), ErrorKind::ConnectionRefused | ErrorKind::Interrupted) => continue,
                 Err(_) => break,
             };
-            let arrival = Arrival { line: inbox.line, at, bytes: bytes[..length].into() };
-            if let Err(TrySendError::Disconnected(_)) = inbox.to.try_send(arrival) {
+            if inbox.put(bytes[..length].into()).is_err() {
                 break;
             }
         }

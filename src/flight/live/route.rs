@@ -6,6 +6,7 @@ use super::mavlink::Mavlink;
 use super::msp::Msp;
 use super::packets::Packets;
 use super::protocol::Protocol;
+use super::ros2::{Ros2, Topic};
 use super::switch::Switch;
 use crate::base::check::BadInput;
 
@@ -33,6 +34,7 @@ enum Language {
     Packets,
     Mavlink,
     Msp,
+    Ros2,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -73,12 +75,17 @@ impl Route {
         let leg = |name: &Name, duty: Duty| {
             // racer's own packets leave a switch that is named to the other link.
             let switch = self.switch.filter(|_| duty.source || self.source.language == Language::Packets);
+            let mut endpoint = name.endpoint.clone();
+            if let Endpoint::Topics { heard, .. } = &mut endpoint {
+                *heard = Topic::heard(switch, duty);
+            }
             let protocol: Box<dyn Protocol> = match name.language {
+                Language::Ros2 => Box::new(Ros2::new(switch, duty)),
                 Language::Packets => Box::new(Packets::new(switch.is_none(), duty.sink)),
                 Language::Mavlink => Box::new(Mavlink::new(switch, duty)),
                 Language::Msp => Box::new(Msp::new(switch, full_rate, self.arm)),
             };
-            Leg { protocol, endpoint: name.endpoint.clone(), option: name.option.clone() }
+            Leg { protocol, endpoint, option: name.option.clone() }
         };
         let mut legs = vec![leg(&self.source, Duty { source: true, sink: self.sink.is_none() })];
         legs.extend(self.sink.iter().map(|sink| leg(sink, Duty { source: false, sink: true })));
@@ -88,6 +95,9 @@ impl Route {
 
 /// What `text` names, after `option`, where `expected` is the kind of name that is asked for.
 fn parse(option: &str, text: &str, expected: &str) -> Result<Name, BadInput> {
+    if let Some(namespace) = text.strip_prefix("ros2:") {
+        return topics(option, text, namespace);
+    }
     let languages = [("mavlink:", Language::Mavlink), ("msp:", Language::Msp), ("", Language::Packets)];
     let found = languages.iter().find_map(|(prefix, language)| Some((*language, text.strip_prefix(prefix)?)));
     let (language, place) = found.unwrap_or((Language::Packets, text));
@@ -96,11 +106,26 @@ fn parse(option: &str, text: &str, expected: &str) -> Result<Name, BadInput> {
     Ok(Name { option: format!("{option} {text}"), language, endpoint })
 }
 
+fn topics(option: &str, text: &str, namespace: &str) -> Result<Name, BadInput> {
+    let built = cfg!(feature = "ros2");
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '/';
+    let named = namespace.len() > 1 && namespace.starts_with('/') && !namespace.ends_with('/');
+    let (expected, advice) = match (built, named && namespace.chars().all(plain)) {
+        (true, true) => {
+            let endpoint = Endpoint::Topics { namespace: namespace.into(), heard: Vec::new(), told: Topic::Target };
+            return Ok(Name { option: format!("{option} {text}"), language: Language::Ros2, endpoint });
+        }
+        (false, _) => ("another link: this racer was built without ROS 2", "cargo build --release --features ros2"),
+        (true, false) => ("ros2:/NAMESPACE, such as ros2:/mavros", "docs/flying.md lists the topics below it"),
+    };
+    Err(BadInput::new(option, text, expected, advice))
+}
+
 fn source(text: &str) -> Result<Name, BadInput> {
-    let expected = format!("udp:PORT, or mavlink: and then {PLACES}");
+    let expected = format!("udp:PORT, or mavlink: and then {PLACES}, or ros2:/NAMESPACE");
     let name = parse("--in", text, &expected)?;
     match (name.language, &name.endpoint) {
-        (Language::Mavlink, _) | (Language::Packets, Endpoint::Listen(_)) => Ok(name),
+        (Language::Mavlink | Language::Ros2, _) | (Language::Packets, Endpoint::Listen(_)) => Ok(name),
         (Language::Msp, _) => Err(BadInput::new(
             "--in",
             text,
@@ -112,10 +137,10 @@ fn source(text: &str) -> Result<Name, BadInput> {
 }
 
 fn sink(text: &str) -> Result<Name, BadInput> {
-    let expected = format!("udp:HOST:PORT, or mavlink: or msp: and then {PLACES}");
+    let expected = format!("udp:HOST:PORT, or mavlink: or msp: and then {PLACES}, or ros2:/NAMESPACE");
     let name = parse("--out", text, &expected)?;
     match (name.language, &name.endpoint) {
-        (Language::Packets, Endpoint::Udp(_)) | (Language::Mavlink | Language::Msp, _) => Ok(name),
+        (Language::Packets, Endpoint::Udp(_)) | (Language::Mavlink | Language::Msp | Language::Ros2, _) => Ok(name),
         _ => Err(BadInput::new("--out", text, &expected, "racer's own packets go to a host and a port of UDP")),
     }
 }
@@ -124,14 +149,18 @@ fn sink(text: &str) -> Result<Name, BadInput> {
 fn check_switch(switch: Option<Switch>, source: Language, sink: Language) -> Result<(), BadInput> {
     let bearer = if source == Language::Packets { sink } else { source };
     let (found, expected) = match (bearer, switch) {
-        (Language::Packets, None) | (Language::Mavlink, Some(_)) | (Language::Msp, Some(Switch::Channel(_))) => {
+        (Language::Packets, None)
+        | (Language::Mavlink | Language::Ros2, Some(_))
+        | (Language::Msp, Some(Switch::Channel(_))) => {
             return Ok(());
         }
         (Language::Msp, None) => return Ok(()),
         (Language::Packets, Some(_)) => {
             ("a name", "none: over racer's own packets bit 0 of the last word is the switch")
         }
-        (Language::Mavlink, None) => ("none", "--switch offboard, --switch rc:CHANNEL or --switch button:NUMBER"),
+        (Language::Mavlink | Language::Ros2, None) => {
+            ("none", "--switch offboard, --switch rc:CHANNEL or --switch button:NUMBER")
+        }
         (Language::Msp, Some(_)) => ("another", "--switch rc:CHANNEL: over MSP there are only channels"),
     };
     Err(BadInput::new(

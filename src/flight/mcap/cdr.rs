@@ -52,7 +52,7 @@ impl CdrDecoder {
             1 => false,
             _ => return Err(format!("its CDR has representation {kind}; 0 and 1, plain CDR, can be read")),
         };
-        let mut input = Input { all: bytes.0.len(), rest: bytes, big };
+        let mut input = Input::new(bytes.0, big);
         let mut planner = Planner { structs: &self.structs, nodes: &mut self.nodes, columns };
         let plan = match &mut self.plan {
             Some(plan) => plan,

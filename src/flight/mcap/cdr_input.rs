@@ -11,7 +11,11 @@ pub struct Input<'a> {
     pub big: bool,
 }
 
-impl Input<'_> {
+impl<'a> Input<'a> {
+    pub fn new(bytes: &'a [u8], big: bool) -> Self {
+        Self { all: bytes.len(), rest: Bytes(bytes), big }
+    }
+
     pub fn align(&mut self, size: usize) -> Option<()> {
         let at = self.all - self.rest.0.len();
         self.rest.take(at.next_multiple_of(size) - at).map(|_| ())

@@ -48,14 +48,16 @@ pub fn flown<'a>(
                 Sent::State(told) => last = tongue.encode(&told),
                 Sent::Again => {}
                 Sent::Damaged(told) => last = tongue.damaged(&told),
-                Sent::Bytes(bytes) => last = bytes,
+                Sent::Bytes(bytes) => last = vec![bytes],
                 Sent::Key => {
                     key = true;
                     continue;
                 }
             }
             let at_s = peer.now_s + 0.002;
-            tongue.source.hear(&last, at_s).into_iter().for_each(|heard| live.receive(heard, at_s));
+            for piece in &last {
+                tongue.source.hear(piece, at_s).into_iter().for_each(|heard| live.receive(heard, at_s));
+            }
         }
         answer = live.tick(peer.now_s + 0.004, key);
         if phases.last() != Some(&answer.phase) {
