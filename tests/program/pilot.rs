@@ -166,6 +166,7 @@ fn bad_links_and_switches_are_refused_with_what_would_be_right() {
         (&["--in", "udp:9101", "--out", "msp:/dev/none:fast"], &["--out", "/dev/none:fast"]),
         (&["--in", "udp:9101", "--out", "msp:/dev/none"], &["--out msp:/dev/none", "plugged in"]),
         (&["--in", "udp:9101", "--out", &nobody], &["--out msp:tcp:127", "start the peer"]),
+        (&["--in", "ros2:mavros/"], &["--in", "ros2:mavros/", "ros2"]),
         (&["--in", "udp:9101", "--arm", "5"], &["--arm 5", "msp:"]),
         (&["--in", "udp:9101", "--out", "msp:/dev/none", "--arm", "4"], &["--arm", "5..=16"]),
         (&["--in", &taken], &["--in", "another port"]),
@@ -176,4 +177,31 @@ fn bad_links_and_switches_are_refused_with_what_would_be_right() {
             assert!(ran.err.contains(part), "{args:?}: `{part}` is not in:\n{}", ran.err);
         }
     }
+}
+
+/// Against a DDS that others wrote. It stays on its pad: the policy ends the flight by itself.
+#[cfg(feature = "ros2")]
+#[test]
+fn over_ros2_to_cyclone_dds() {
+    let folder = tempfile::tempdir().unwrap();
+    let estimate = Peer::new(&mission()).told(false).estimate;
+    let (position, attitude, voltage) = (estimate.position, estimate.attitude, estimate.voltage);
+    let pad = serde_json::json!({"position": position, "attitude": attitude, "voltage": voltage});
+    let path = folder.path().join("pad.json");
+    std::fs::write(&path, pad.to_string()).unwrap();
+    let child = start(&["--in", "ros2:/mavros", "--switch", "offboard"]);
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/ros2_peer.py");
+    let Some(output) = crate::support::python("cyclonedds", &[&script, &path]) else { return stop(child) };
+    let output: serde_json::Value = serde_json::from_slice(&output).unwrap();
+    assert_eq!(output["setpoints"][0], serde_json::json!([128, 0.0, 0.0, 0.0, 0.0]));
+    assert!(output["counts"][0].as_u64() > Some(10) && output["counts"][1].as_u64() > Some(0), "{output}");
+    let ended = child.wait_with_output().unwrap();
+    let told = String::from_utf8(ended.stderr).unwrap();
+    assert!(told.contains("\nready") && told.contains("\nflying\n") && told.contains("\nended: "), "{told}");
+}
+
+#[cfg(feature = "ros2")]
+fn stop(mut child: Child) {
+    child.kill().unwrap();
+    child.wait().unwrap();
 }
