@@ -88,7 +88,8 @@ def main():
         battery.write(Battery(header, pad["voltage"]))
         odometry.write(Odometry(header, "base_link", pad["position"], [x, y, z, w], [0.0] * 36, [0.0] * 3, [0.0] * 3,
                                 [0.0] * 36))
-        for sample in target.take(N=16):
+        # What is no setpoint says that the writer has gone.
+        for sample in (s for s in target.take(N=16) if isinstance(s, AttitudeTarget)):
             first, last = first or time.monotonic(), time.monotonic()
             counts[flying] += 1
             setpoints[flying] = [sample.type_mask, *sample.body_rate, sample.thrust]

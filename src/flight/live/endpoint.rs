@@ -1,6 +1,6 @@
 //! Where a link ends: the part of a name behind its protocol.
 
-use super::ros2::Topic;
+use super::ros2::RosTopic;
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::PathBuf;
 
@@ -16,8 +16,8 @@ pub enum Endpoint {
     /// Topics of ROS 2 below a namespace: those that are listened to, and the one that is written.
     Topics {
         namespace: String,
-        heard: Vec<Topic>,
-        told: Topic,
+        heard: Vec<RosTopic>,
+        told: RosTopic,
     },
 }
 

@@ -1,6 +1,6 @@
-//! ROS 2, over DDS without an installation of ROS: the topics of a mavros node, or of whoever gives his own these names.
+//! ROS 2, over DDS without an installation of ROS: the topics of a mavros node, or others with the same names.
 //!
-//! What arrives is one byte, the topic's place in [`Topic::ALL`], and a message as CDR with its header.
+//! What arrives is one byte, the topic's place in [`RosTopic::ALL`], and a message as CDR with its header.
 
 use super::answer::Answer;
 use super::duty::Duty;
@@ -17,7 +17,7 @@ use crate::race::onboard::Estimate;
 
 /// A topic below the namespace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Topic {
+pub enum RosTopic {
     Odometry,
     Battery,
     Mode,
@@ -26,34 +26,40 @@ pub enum Topic {
     Target,
 }
 
-impl Topic {
-    pub const ALL: [Topic; 6] =
-        [Topic::Odometry, Topic::Battery, Topic::Mode, Topic::Channels, Topic::Joystick, Topic::Target];
+impl RosTopic {
+    pub const ALL: [RosTopic; 6] = [
+        RosTopic::Odometry,
+        RosTopic::Battery,
+        RosTopic::Mode,
+        RosTopic::Channels,
+        RosTopic::Joystick,
+        RosTopic::Target,
+    ];
 
     /// Its name below the namespace, and its type as DDS has it.
     #[cfg(feature = "ros2")]
     pub fn names(self) -> [&'static str; 2] {
         match self {
-            Topic::Odometry => ["local_position/odom", "nav_msgs::msg::dds_::Odometry_"],
-            Topic::Battery => ["battery", "sensor_msgs::msg::dds_::BatteryState_"],
-            Topic::Mode => ["state", "mavros_msgs::msg::dds_::State_"],
-            Topic::Channels => ["rc/in", "mavros_msgs::msg::dds_::RCIn_"],
-            Topic::Joystick => ["joy", "sensor_msgs::msg::dds_::Joy_"],
-            Topic::Target => ["setpoint_raw/attitude", "mavros_msgs::msg::dds_::AttitudeTarget_"],
+            RosTopic::Odometry => ["local_position/odom", "nav_msgs::msg::dds_::Odometry_"],
+            RosTopic::Battery => ["battery", "sensor_msgs::msg::dds_::BatteryState_"],
+            RosTopic::Mode => ["state", "mavros_msgs::msg::dds_::State_"],
+            RosTopic::Channels => ["rc/in", "mavros_msgs::msg::dds_::RCIn_"],
+            RosTopic::Joystick => ["joy", "sensor_msgs::msg::dds_::Joy_"],
+            RosTopic::Target => ["setpoint_raw/attitude", "mavros_msgs::msg::dds_::AttitudeTarget_"],
         }
     }
 
     /// The topics to listen to.
-    pub fn heard(switch: Option<Switch>, duty: Duty) -> Vec<Topic> {
-        let states = [Topic::Odometry, Topic::Battery].into_iter().filter(|_| duty.source);
-        states.chain(switch.map(Topic::of_switch)).collect()
+    pub fn heard(switch: Option<Switch>, duty: Duty) -> Vec<RosTopic> {
+        let states = [RosTopic::Odometry, RosTopic::Battery].into_iter().filter(|_| duty.source);
+        states.chain(switch.map(RosTopic::of_switch)).collect()
     }
 
     fn of_switch(switch: Switch) -> Self {
         match switch {
-            Switch::Channel(_) => Topic::Channels,
-            Switch::Button(_) => Topic::Joystick,
-            Switch::Offboard => Topic::Mode,
+            Switch::Channel(_) => RosTopic::Channels,
+            Switch::Button(_) => RosTopic::Joystick,
+            Switch::Offboard => RosTopic::Mode,
         }
     }
 }
@@ -71,22 +77,22 @@ impl Ros2 {
         Self { switch, duty }
     }
 
-    fn message(&self, topic: Topic, input: &mut Message) -> Option<Heard> {
+    fn message(&self, topic: RosTopic, input: &mut Serialized) -> Option<Heard> {
         let time_us = input.header()?;
         match (topic, self.switch) {
-            (Topic::Odometry, _) => odometry(input).map(|estimate| Heard::State(Sight { time_us, estimate })),
-            (Topic::Battery, _) => input.number(Number::F32).map(|volts| Heard::Voltage(volts as f32)),
-            (Topic::Mode, Some(switch)) => {
+            (RosTopic::Odometry, _) => odometry(input).map(|estimate| Heard::State(Sight { time_us, estimate })),
+            (RosTopic::Battery, _) => input.number(Number::F32).map(|volts| Heard::Voltage(volts as f32)),
+            (RosTopic::Mode, Some(switch)) => {
                 let [_, armed, _, _] = input.numbers(Number::U8)?;
                 let mode = input.text()?;
                 switch.of_mode(armed != 0.0 && mode == b"OFFBOARD\0")
             }
-            (Topic::Channels, Some(switch)) => {
+            (RosTopic::Channels, Some(switch)) => {
                 input.number(Number::U8)?;
                 let channels = input.list(Number::U16)?;
                 switch.of_channels(&channels.iter().map(|us| *us as u16).collect::<Vec<_>>())
             }
-            (Topic::Joystick, Some(switch)) => {
+            (RosTopic::Joystick, Some(switch)) => {
                 input.list(Number::F32)?;
                 let buttons = input.list(Number::I32)?;
                 let bits = buttons.iter().take(16).enumerate();
@@ -100,8 +106,8 @@ impl Ros2 {
 impl Protocol for Ros2 {
     fn hear(&mut self, bytes: &[u8], _: f64) -> Vec<Heard> {
         let heard = bytes.split_first().and_then(|(place, message)| {
-            let topic = *Topic::ALL.get(usize::from(*place))?;
-            self.message(topic, &mut Message::of(message)?)
+            let topic = *RosTopic::ALL.get(usize::from(*place))?;
+            self.message(topic, &mut Serialized::of(message)?)
         });
         vec![heard.unwrap_or(Heard::Foreign)]
     }
@@ -123,7 +129,7 @@ impl Protocol for Ros2 {
 }
 
 /// Position, then orientation x y z w, and velocities along the body's axes, between covariances.
-fn odometry(input: &mut Message) -> Option<Estimate> {
+fn odometry(input: &mut Serialized) -> Option<Estimate> {
     input.text()?;
     let [x, y, z, qx, qy, qz, qw] = input.numbers(Number::F64)?;
     input.numbers::<36>(Number::F64)?;
@@ -140,12 +146,12 @@ fn odometry(input: &mut Message) -> Option<Estimate> {
 }
 
 /// A message in CDR, read from its front.
-struct Message<'a>(Input<'a>);
+struct Serialized<'a>(Input<'a>);
 
 /// Longest list that is read: channels and buttons.
 const LIST: usize = 64;
 
-impl<'a> Message<'a> {
+impl<'a> Serialized<'a> {
     /// Behind the four bytes that say how it is encoded.
     fn of(bytes: &'a [u8]) -> Option<Self> {
         let ([_, big, _, _], rest) = bytes.split_first_chunk()?;

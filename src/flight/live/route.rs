@@ -6,7 +6,7 @@ use super::mavlink::Mavlink;
 use super::msp::Msp;
 use super::packets::Packets;
 use super::protocol::Protocol;
-use super::ros2::{Ros2, Topic};
+use super::ros2::{Ros2, RosTopic};
 use super::switch::Switch;
 use crate::base::check::BadInput;
 
@@ -77,7 +77,7 @@ impl Route {
             let switch = self.switch.filter(|_| duty.source || self.source.language == Language::Packets);
             let mut endpoint = name.endpoint.clone();
             if let Endpoint::Topics { heard, .. } = &mut endpoint {
-                *heard = Topic::heard(switch, duty);
+                *heard = RosTopic::heard(switch, duty);
             }
             let protocol: Box<dyn Protocol> = match name.language {
                 Language::Ros2 => Box::new(Ros2::new(switch, duty)),
@@ -112,7 +112,7 @@ fn topics(option: &str, text: &str, namespace: &str) -> Result<Name, BadInput> {
     let named = namespace.len() > 1 && namespace.starts_with('/') && !namespace.ends_with('/');
     let (expected, advice) = match (built, named && namespace.chars().all(plain)) {
         (true, true) => {
-            let endpoint = Endpoint::Topics { namespace: namespace.into(), heard: Vec::new(), told: Topic::Target };
+            let endpoint = Endpoint::Topics { namespace: namespace.into(), heard: Vec::new(), told: RosTopic::Target };
             return Ok(Name { option: format!("{option} {text}"), language: Language::Ros2, endpoint });
         }
         (false, _) => ("another link: this racer was built without ROS 2", "cargo build --release --features ros2"),

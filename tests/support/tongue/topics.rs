@@ -2,13 +2,13 @@
 
 use super::Told;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use racer::flight::live::ros2::Topic;
+use racer::flight::live::ros2::RosTopic;
 
 /// CDR, little-endian, behind the place of its topic.
 struct Serialized(Vec<u8>);
 
 impl Serialized {
-    fn new(topic: Topic, time_us: u64) -> Self {
+    fn new(topic: RosTopic, time_us: u64) -> Self {
         let mut out = Self(vec![topic as u8, 0, 1, 0, 0]);
         out.word((time_us / 1_000_000) as u32);
         out.word((time_us % 1_000_000 * 1000) as u32);
@@ -40,13 +40,13 @@ impl Serialized {
 /// Battery, mode, and odometry.
 pub fn messages(told: &Told) -> Vec<Vec<u8>> {
     let e = &told.estimate;
-    let mut battery = Serialized::new(Topic::Battery, told.time_us);
+    let mut battery = Serialized::new(RosTopic::Battery, told.time_us);
     battery.put(&e.voltage.to_le_bytes());
-    let mut mode = Serialized::new(Topic::Mode, told.time_us);
+    let mut mode = Serialized::new(RosTopic::Mode, told.time_us);
     mode.0.extend([1, 1, 0, 0]);
     mode.text(if told.switch { "OFFBOARD" } else { "POSCTL" });
     mode.0.push(4);
-    let mut odometry = Serialized::new(Topic::Odometry, told.time_us);
+    let mut odometry = Serialized::new(RosTopic::Odometry, told.time_us);
     odometry.text("base_link");
     let [w, x, y, z] = e.attitude;
     odometry.doubles(&e.position);

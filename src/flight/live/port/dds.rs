@@ -1,7 +1,7 @@
 //! Topics of ROS 2, over DDS. `ROS_DOMAIN_ID` says which domain, as it does for ROS.
 
 use super::{Inbox, Port};
-use crate::flight::live::ros2::Topic;
+use crate::flight::live::ros2::RosTopic;
 use bytes::Bytes;
 use rustdds::no_key::{DataReader, DataWriter, Decode, DefaultDecoder, DeserializerAdapter, SerializerAdapter};
 use rustdds::policy::{History, Reliability};
@@ -78,13 +78,13 @@ impl Port for Topics {
 }
 
 /// Listens to `heard` below `namespace`, and writes to `told`.
-pub fn open(namespace: &str, heard: &[Topic], told: Topic, inbox: Inbox) -> io::Result<Box<dyn Port>> {
+pub fn open(namespace: &str, heard: &[RosTopic], told: RosTopic, inbox: Inbox) -> io::Result<Box<dyn Port>> {
     let domain = std::env::var("ROS_DOMAIN_ID").ok().and_then(|id| id.parse().ok()).unwrap_or(0);
     let participant = DomainParticipant::new(domain).map_err(io::Error::other)?;
     // A reader that asks for little hears every writer, and a writer that offers much is heard by every reader.
     let asked = quality(Reliability::BestEffort);
     let offered = quality(Reliability::Reliable { max_blocking_time: rustdds::Duration::ZERO });
-    let topic = |topic: Topic| {
+    let topic = |topic: RosTopic| {
         let [name, kind] = topic.names();
         let name = format!("rt{namespace}/{name}");
         participant.create_topic(name, kind.into(), &asked, TopicKind::NoKey).map_err(io::Error::other)
