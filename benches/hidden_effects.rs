@@ -16,6 +16,8 @@ mod criteria;
 mod judge;
 #[path = "hidden_effects/other.rs"]
 mod other;
+#[path = "hidden_effects/pairs.rs"]
+mod pairs;
 #[path = "hidden_effects/real.rs"]
 mod real;
 #[path = "hidden_effects/run.rs"]
@@ -40,6 +42,11 @@ fn main() {
     if let Some(wanted) = &args.criteria {
         return criteria::measure(&args, wanted);
     }
+    if args.against {
+        let pairs = each(&args, |number| pairs::case(number, &args), pairs::Pair::line);
+        pairs::print(&pairs);
+        return args.csv.iter().for_each(|path| pairs::write(path, &pairs));
+    }
     let mut judged = Vec::new();
     if args.tier != Tier::Real {
         judged = drawn(&args);
@@ -53,23 +60,29 @@ fn main() {
     }
 }
 
-/// All drawn cases, `--jobs` at a time.
+/// All drawn cases.
 fn drawn(args: &Args) -> Vec<Judged> {
-    let next = AtomicUsize::new(0);
+    let one = |number| match args.tier {
+        Tier::Other => other::case(number, args),
+        _ => run::case(&Case::draw(number, args), args),
+    };
+    each(args, one, Judged::line)
+}
+
+/// `--n` cases, `--jobs` at a time, each printed as a line when it is done.
+fn each<T: Send>(args: &Args, one: impl Fn(usize) -> T + Sync, line: impl Fn(&T) -> String + Sync) -> Vec<T> {
+    let next = AtomicUsize::new(args.from);
     let done = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for _ in 0..args.jobs.max(1) {
             scope.spawn(|| {
                 loop {
                     let number = next.fetch_add(1, Ordering::Relaxed);
-                    if number >= args.n {
+                    if number >= args.from + args.n {
                         return;
                     }
-                    let judged = match args.tier {
-                        Tier::Other => other::case(number, args),
-                        _ => run::case(&Case::draw(number, args), args),
-                    };
-                    println!("{number:>5}  {}", judged.line());
+                    let judged = one(number);
+                    println!("{number:>5}  {}", line(&judged));
                     done.lock().expect("no thread panics with it").push((number, judged));
                 }
             });

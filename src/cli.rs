@@ -68,7 +68,7 @@ Exit codes:
   2    bad input: nothing was started
   3    a flight log is damaged; its readable part was used
   4    `--require` was not met, or a rehearsal did not complete its laps
-  5    `--fail-on-effect` found an effect
+  5    `--fail-on-effect` found an effect, or `--fail-on-change` a change
   6    `racer check` found what stops identification and diagnosis
   130  stopped by Ctrl-C";
 

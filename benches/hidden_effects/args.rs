@@ -39,6 +39,12 @@ pub struct Args {
     /// Number of logs
     #[arg(long, default_value_t = 300)]
     pub n: usize,
+    /// Number of the first one: a long run can be made in parts
+    #[arg(long, default_value_t = 0)]
+    pub from: usize,
+    /// Instead of single logs: pairs of flights of one vehicle of the third truth, half without a change between them
+    #[arg(long)]
+    pub against: bool,
     /// Decides everything that is drawn
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -85,6 +91,8 @@ impl Args {
         let only = self.size.map_or(only.clone(), |size| format!("{only} --size {size}"));
         let [tier, style] = [format!("{:?}", self.tier), format!("{:?}", self.style)].map(|name| name.to_lowercase());
         let (n, seed, seconds) = (self.n, self.seed, self.seconds);
+        let from = if self.from > 0 { format!(" --from {}", self.from) } else { String::new() };
+        let only = if self.against { format!("{from} --against{only}") } else { from + &only };
         format!("--n {n} --seed {seed} --tier {tier} --style {style} --seconds {seconds}{only}")
     }
 

@@ -1,6 +1,6 @@
 //! Statistics of samples.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
 /// 97.5 % quantile of the standard normal distribution: half the width of a 95 % interval, in standard deviations.
 pub const NORMAL_95: f64 = 1.959_964;
@@ -39,6 +39,11 @@ pub fn mean_half_width(x: &[f64], confidence: f64) -> Option<f64> {
     let sd = sd(x)?;
     let t = StudentsT::new(0.0, 1.0, (x.len() - 1) as f64).ok()?.inverse_cdf(0.5 + 0.5 * confidence);
     Some(t * sd / (x.len() as f64).sqrt())
+}
+
+/// Chance that `n` independent squares of standard normal numbers sum to `sum` or more; 1 where there is none.
+pub fn chi_squared_chance(sum: f64, n: usize) -> f64 {
+    ChiSquared::new(n as f64).map_or(1.0, |distribution| distribution.sf(sum))
 }
 
 /// Standard deviation of normal samples, from the median of their distances to zero: outliers hardly move it.

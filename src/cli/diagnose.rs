@@ -1,5 +1,6 @@
 //! `racer diagnose`: what the simulation gets wrong, and why.
 
+mod changes;
 mod output;
 mod text;
 mod thresholds;
@@ -27,6 +28,9 @@ pub struct Args {
     /// Logs of one vehicle in the order of flight: MCAP, Betaflight blackbox, PX4 ULog or CSV
     #[arg(required_unless_present = "criteria", value_name = "LOG")]
     logs: Vec<PathBuf>,
+    /// An earlier log of the same vehicle; give it once for each: what changed since is named first
+    #[arg(long, value_name = "LOG")]
+    against: Vec<PathBuf>,
     /// The vehicle that the simulation takes it for: a name or a file [default: identified from the logs]
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<String>,
@@ -58,6 +62,9 @@ pub struct Args {
     /// End with exit code 5 where an effect or unexplained structure is found
     #[arg(long)]
     fail_on_effect: bool,
+    /// End with exit code 5 where something changed since the logs of --against
+    #[arg(long, requires = "against")]
+    fail_on_change: bool,
     /// What the logs' fields mean: a mapping's name or file [default: the format's own, or the one that fits]
     #[arg(long, value_name = "NAME|FILE")]
     mapping: Option<String>,
@@ -78,12 +85,18 @@ const HELP: &str = "The flight is predicted from its commands by the simulator's
 show is tested against a catalogue of effects; those that are evident, replicated, of a size that matters, and leave \
 nothing structured behind, are named, with what they are worth on flight that was not used for fitting.
 
-Exit code 3 means that a log is damaged and that its readable part was used, 5 that --fail-on-effect found something.
+With --against, both sets of flights are fitted as one vehicle's. What differs between them is named, with its size \
+before and after; what both show is the vehicle's, and so is what the model gets wrong of both alike. The rest of the \
+report is about the later flights.
+
+Exit code 3 means that a log is damaged and that its readable part was used, 5 that --fail-on-effect or \
+--fail-on-change found something.
 
 Examples:
   racer diagnose flight.mcap --vehicle mine.toml
   racer diagnose flight.mcap --vehicle mine.toml --report diagnosis.html
   racer diagnose flight.mcap --vehicle mine.toml --extend better.toml
+  racer diagnose today.mcap --against yesterday.mcap
   racer diagnose flight.mcap --plan";
 
 /// Reads, checks, diagnoses, prints, writes.
@@ -97,18 +110,28 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let given = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
     check_racing(args)?;
     let bar = progress::bar();
-    let logs = logs::read(&args.logs, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
+    let all: Vec<PathBuf> = args.against.iter().chain(&args.logs).cloned().collect();
+    let mut before = logs::read(&all, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
     if !args.despite_problems {
-        identify::refuse::problems(&logs)?;
+        identify::refuse::problems(&before)?;
     }
-    let damaged = logs::damaged(&logs);
-    let base = given.map_or_else(|| identified(args, &logs, &bar), Ok)?;
-    let diagnosed = diagnose(logs, &base, &mut |step, share| {
+    let damaged = logs::damaged(&before);
+    let base = given.map_or_else(|| identified(args, &before, &bar), Ok)?;
+    let logs = before.split_off(args.against.len());
+    let mut watch = |step: &str, share: f64| {
         bar.set_position((100.0 * share) as u64);
         bar.set_message(step.to_string());
-    });
+    };
+    let mut changes = changes::find(before, &logs, &base, &mut watch)?;
+    let diagnosed = diagnose(logs, &base, &mut watch);
+    changes.iter_mut().for_each(|changes| changes.confirm(&diagnosed.diagnosis));
+    let diagnosed = Diagnosed { changes, ..diagnosed };
     bar.finish_and_clear();
     let diagnosis = &diagnosed.diagnosis;
+    let changed = diagnosed.changes.as_ref();
+    if let Some(changes) = changed {
+        super::print(&(changes::text(changes) + "\n\nthe later flights by themselves:\n"))?;
+    }
     super::print(&if args.plan { text::plan(diagnosis) } else { text::text(diagnosis) })?;
     output.write(&diagnosed)?;
     if let Some(policy) = &args.policy {
@@ -117,7 +140,9 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     if let Some(minutes) = args.retrain {
         super::print(&worth::retrained(&args.retrain_out, minutes, &base, extended(&diagnosed, "--retrain")?)?)?;
     }
-    Ok(if args.fail_on_effect && diagnosis.verdict != Verdict::Clean {
+    let effect = args.fail_on_effect && diagnosis.verdict != Verdict::Clean;
+    let change = args.fail_on_change && changed.is_some_and(|changes| changes.changed);
+    Ok(if effect || change {
         CommandEnd::Effect
     } else if damaged {
         CommandEnd::Damaged

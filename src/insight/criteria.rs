@@ -5,6 +5,7 @@
 
 pub mod believed;
 pub mod chance;
+pub mod changed;
 pub mod complete;
 pub mod consistent;
 pub mod drifted;
@@ -79,6 +80,7 @@ pub fn all() -> impl Iterator<Item = &'static Criterion> {
         unseen::ALL,
         chance::ALL,
         drifted::ALL,
+        changed::ALL,
         shown::ALL,
     ];
     questions.into_iter().flatten().copied()

@@ -9,13 +9,16 @@
 // Samples, axes and channels index several arrays at once here.
 #![allow(clippy::needless_range_loop)]
 
+pub mod accident;
 pub mod actuator_response;
 pub mod adequacy;
+pub mod against;
 pub mod bend;
 pub mod bends;
 pub mod candidates;
 pub mod cause;
 pub mod channels;
+pub mod contrast;
 pub mod disambiguate;
 pub mod doubt;
 pub mod drift;
@@ -36,7 +39,9 @@ pub mod kinematics;
 pub mod lost;
 pub mod measured;
 pub mod model;
+pub mod motors;
 pub mod numbers;
+pub mod one_motor;
 pub mod oscillation;
 pub mod place;
 pub mod plan;
@@ -80,6 +85,8 @@ pub struct Diagnosed {
     pub diagnosis: Diagnosis,
     /// The base vehicle with what was found; why there is none where it would be no vehicle, or predict worse.
     pub vehicle: Result<Vehicle, String>,
+    /// What changed since earlier flights, where there are such.
+    pub changes: Option<against::Changes>,
     #[doc(hidden)]
     pub problem: Problem,
     #[doc(hidden)]
@@ -103,9 +110,8 @@ pub fn problem(logs: Vec<Quality>, vehicle: &Vehicle) -> Problem {
 /// Diagnoses flights of a vehicle that is thought to be `vehicle`.
 pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnosed {
     watch("predicting", 0.02);
-    let usable_s = logs.iter().map(|q| crate::flight::spans::length(&q.usable)).sum();
-    let problem = problem(logs, vehicle);
-    let mut selection = select::select(&problem, watch);
+    let (problem, mut selection, left_out) = accident::select_steady(logs, vehicle, watch);
+    let usable_s = problem.records.iter().map(|r| r.usable_s).sum();
     whole::parts(&problem, &mut selection);
     disambiguate::clocks(&problem, &mut selection);
     let lost = disambiguate::chance(&problem, &mut selection);
@@ -120,6 +126,8 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let kept = &kept;
     let fitted_kept = FittedSelection::new(&problem, kept);
     as_written(&fitted_kept, &mut findings);
+    let driven: Vec<motors::Driven> = problem.records.iter().flat_map(|r| r.driven.clone()).collect();
+    one_motor::name(&driven, &mut findings);
     let held = gain::measure(&problem, &selection, kept);
     for finding in &mut findings {
         let one = judged.iter().find(|j| j.finding.effect == finding.effect);
@@ -143,6 +151,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         logs: problem.records.iter().map(|r| r.name.clone()).collect(),
         base: vehicle.name.clone(),
         usable_s,
+        left_out,
         findings,
         unexplained,
         small,
@@ -157,7 +166,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         structure,
         not_extended: extended.as_ref().err().cloned(),
     };
-    Diagnosed { diagnosis, vehicle: extended, problem, selection }
+    Diagnosed { diagnosis, vehicle: extended, changes: None, problem, selection }
 }
 
 /// Sizes in the report are those of the extended vehicle. Lost commands are counted, and not fitted.

@@ -1,5 +1,6 @@
 //! The parts of the library, each against numbers and rules known without it.
 
+mod against;
 mod blackbox;
 mod cards;
 mod chain;

@@ -1,5 +1,6 @@
 //! The program as its users meet it: what they type, what is printed where, what is left on disk.
 
+mod against;
 mod cli;
 mod criteria;
 mod diagnose_report;

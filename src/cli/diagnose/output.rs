@@ -6,8 +6,11 @@ use crate::base::encode;
 use crate::base::fsio::{self, Reserved};
 use crate::cli::tell;
 use crate::insight::diagnose::Diagnosed;
+use crate::insight::diagnose::against::Changes;
+use crate::insight::diagnose::finding::Diagnosis;
 use crate::present::report;
 use crate::present::report::diagnosis::DiagnosisFigures;
+use serde::Serialize;
 use std::path::Path;
 
 /// Those that were asked for, known to be writable before the work begins.
@@ -30,7 +33,8 @@ impl<'a> OutputFiles<'a> {
     pub fn write(self, diagnosed: &Diagnosed) -> anyhow::Result<()> {
         show(diagnosed, self.page, self.figures)?;
         if let Some(json) = self.json {
-            let document = encode::json("the diagnosis", &diagnosed.diagnosis)?;
+            let (changes, diagnosis) = (diagnosed.changes.as_ref(), &diagnosed.diagnosis);
+            let document = encode::json("the diagnosis", &Document { changes, diagnosis })?;
             tell(&format!("figures in {}", json.write(document.as_bytes())?.display()));
         }
         if let Some(file) = self.vehicle {
@@ -40,6 +44,15 @@ impl<'a> OutputFiles<'a> {
         }
         Ok(())
     }
+}
+
+/// The JSON file: what changed comes first.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    changes: Option<&'a Changes>,
+    #[serde(flatten)]
+    diagnosis: &'a Diagnosis,
 }
 
 /// Page and figures, where they are asked for.

@@ -1,12 +1,14 @@
 //! A diagnosis as text.
 
 use crate::cli::columns;
+use crate::insight::diagnose::accident::LeftOut;
 use crate::insight::diagnose::finding::{Diagnosis, Finding, Status};
 use crate::present::report::digits;
 
 /// What is wrong, why, what it is worth, what to fly next.
 pub fn text(d: &Diagnosis) -> String {
     let mut out = vec![d.headline()];
+    out.extend(left_out(d));
     for (i, finding) in d.findings.iter().enumerate() {
         out.push(format!("{}. {}", i + 1, paragraph(finding)));
     }
@@ -65,6 +67,16 @@ pub fn text(d: &Diagnosis) -> String {
     out.join("\n\n")
 }
 
+/// Seconds in which something happened.
+fn left_out(d: &Diagnosis) -> Option<String> {
+    let one = |l: &LeftOut| {
+        let [from, to] = l.span_s;
+        format!("{from:.1} to {to:.1} s of {} ({} {:.0} times as far off as usual)", l.log, l.channel, l.times)
+    };
+    let all: Vec<String> = d.left_out.iter().map(one).collect();
+    (!all.is_empty()).then(|| format!("left out, because something happened there: {}", all.join(", ")))
+}
+
 /// What was gained of what could be gained at most.
 fn captured(d: &Diagnosis) -> Option<String> {
     let captured = d.captured?;
@@ -76,7 +88,7 @@ fn captured(d: &Diagnosis) -> Option<String> {
 }
 
 /// A value and its interval, with as many digits as the interval's width has a meaning for.
-fn interval(value: f64, low: f64, high: f64) -> String {
+pub fn interval(value: f64, low: f64, high: f64) -> String {
     let [value, low, high] = [value, low, high].map(|x| digits(x, high - low, 2));
     format!("{value} ({low} to {high})")
 }

@@ -21,4 +21,6 @@ criteria! {
     IDLE_FORCE = 0.08, Assumed("a push of 0.1 m/s over the second that a policy plans ahead");
     /// The same in the voltage, V.
     IDLE_VOLTAGE = 0.02, Assumed("a change of thrust of 0.3 %");
+    /// Share of its thrust that a weak motor lacks against the others.
+    WEAK_MOTOR = 0.05, Assumed("motors and propellers of one make differ by a few percent");
 }

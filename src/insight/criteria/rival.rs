@@ -18,4 +18,6 @@ criteria! {
     SAME_LAG_SHARE = 0.5, Assumed("the lag is known worse than the shift");
     /// A delay of less than so many times the mean delay of the lost commands is theirs.
     LOST_DELAY = 3.0, Assumed("bursts of lost commands have a mean delay beyond a single one's");
+    /// Share of what the motors differ by that a single one has to account for to be weak.
+    ALONE_SHARE = 0.75, Theory("a centre of mass that is off gives a third, off in two directions at most two thirds");
 }

@@ -75,4 +75,13 @@ criteria! {
     VELOCITY_ACCELERATION = 100.0, Assumed("ten g: more than racing quadrotors have");
     /// Odometry slower than this is not integrated against, Hz.
     ODOMETRY_RATE_HZ = 40.0, Assumed("attitude is interpolated between its samples; a flip takes 0.3 s");
+
+    /// Power of a second's whitened residual, in medians of all seconds, from which it is an accident and left out.
+    ACCIDENT_POWER = 30.0, Assumed("five times as far off as usual, throughout a second");
+    /// Robust standard deviations (of the logarithm) that it is beyond the others besides.
+    ACCIDENT_DEVIATIONS = 8.0, Assumed("seconds of flights that vary a lot have heavier tails than the normal law");
+    /// Share of the seconds up to which they are accidents; more is what the vehicle does.
+    ACCIDENT_SHARE = 0.03, Assumed("an effect that is flown rarely shows in more of them");
+    /// Kept away from such a second, s.
+    ACCIDENT_MARGIN_S = 0.25, Assumed("the stretch over which turns and pushes are compared");
 }

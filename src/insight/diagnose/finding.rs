@@ -1,5 +1,6 @@
 //! What a diagnosis says.
 
+use super::accident::LeftOut;
 use super::horizon::Horizon;
 use super::structure::Structure;
 use crate::insight::criteria::shown::MENTIONED_SHARE;
@@ -182,6 +183,8 @@ pub struct Diagnosis {
     pub base: String,
     /// Usable flight, s.
     pub usable_s: f64,
+    /// Seconds that were left out because something happened in them.
+    pub left_out: Vec<LeftOut>,
     /// By impact.
     pub findings: Vec<Finding>,
     /// Evident, and too small for anybody to notice.

@@ -1,12 +1,14 @@
 //! All flights as rows of residuals by channel, and their derivatives by any number of the model.
 
 use super::channels::CHANNELS;
+use super::contrast::Contrast;
 use super::measured::measured;
 use super::model::Model;
 use super::predict::Predicted;
 use super::record::FlightRecord;
 use crate::insight::estimate::gram::Stretch;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// One row of a channel.
@@ -39,6 +41,8 @@ pub struct Problem {
     pub rows: [Vec<ResidualRow>; CHANNELS],
     pub measured: ChannelValues,
     pub blocks: usize,
+    /// Where later flights may differ from the others.
+    pub contrast: Option<Contrast>,
 }
 
 /// A prediction of every flight.
@@ -46,7 +50,8 @@ pub type Predictions = Vec<Predicted>;
 
 impl Problem {
     pub fn new(model: Model, records: Vec<FlightRecord>) -> Self {
-        let mut out = Self { model, records, rows: Default::default(), measured: Default::default(), blocks: 0 };
+        let rows = Default::default();
+        let mut out = Self { model, records, rows, measured: Default::default(), blocks: 0, contrast: None };
         let start = out.predict(&out.model.base);
         let gravity = out.model.vehicle().gravity_m_s2;
         out.blocks = out.records.iter().filter_map(|r| r.block.last()).map(|b| *b as usize + 1).max().unwrap_or(0);
@@ -83,15 +88,25 @@ impl Problem {
         self.records.iter().scan(0.0, after).collect()
     }
 
+    /// The numbers of flight `f` at `x`.
+    pub fn numbers<'a>(&self, f: usize, x: &'a [f64]) -> Cow<'a, [f64]> {
+        self.contrast.as_ref().map_or(x.into(), |contrast| contrast.numbers(&self.model, f, x))
+    }
+
     /// Predicts every flight at `x`.
     pub fn predict(&self, x: &[f64]) -> Predictions {
-        self.records.iter().enumerate().map(|(f, record)| Predicted::new(&self.model, record, f, x)).collect()
+        let one = |(f, record)| Predicted::new(&self.model, record, f, &self.numbers(f, x));
+        self.records.iter().enumerate().map(one).collect()
     }
 
     /// Predicts at `x`, which differs from that of `state` in the numbers `which`.
     pub fn change(&self, state: &Predictions, which: &[usize], x: &[f64]) -> Predictions {
-        let dirty = self.model.dirty(which, x);
-        let one = |(f, record): (usize, &FlightRecord)| state[f].changed(dirty, &self.model, record, f, x);
+        let one = |(f, record): (usize, &FlightRecord)| {
+            let x = self.numbers(f, x);
+            let reaches = |k: &usize| self.contrast.as_ref().is_none_or(|contrast| contrast.reaches(f, *k));
+            let which: Vec<usize> = which.iter().copied().filter(reaches).collect();
+            state[f].changed(self.model.dirty(&which, &x), &self.model, record, f, &x)
+        };
         self.records.iter().enumerate().map(one).collect()
     }
 

@@ -1,9 +1,11 @@
 //! A flight, ready to be predicted: what was commanded, what the surroundings were, and what was measured, on the IMU's
 //! clock.
 
+use super::motors::{Driven, driven};
 use crate::base::stats::quantile;
 use crate::flight::Log;
 use crate::flight::series::{last_at, period};
+use crate::flight::spans::length;
 use crate::insight::criteria::consistent::ONE_CLOCK_SHARE;
 use crate::insight::prepare::flight::PreparedFlight;
 use crate::insight::prepare::rotors::command_per_speed;
@@ -34,6 +36,8 @@ pub struct Fine {
 #[derive(Debug)]
 pub struct FlightRecord {
     pub name: String,
+    /// Usable flight, s.
+    pub usable_s: f64,
     /// By how much the odometry's clock was moved to the gyro's, s.
     pub moved: f64,
     pub fine: Fine,
@@ -52,6 +56,8 @@ pub struct FlightRecord {
     pub from_rotors: bool,
     /// Body rates (rad/s) and specific force (m/s2) as measured.
     pub imu: [Vec<f64>; 6],
+    /// What its motors are driven with, each two seconds.
+    pub driven: Vec<Driven>,
     /// Velocity, body frame, m/s; 0 throughout where the log does not know it.
     pub velocity: [Vec<f64>; 3],
     pub moves: bool,
@@ -106,6 +112,7 @@ impl FlightRecord {
         let volts = volts.filter(|(i, _)| *i < time.len() && usable[*i]).collect();
         let mut out = Self {
             name: log.name.clone(),
+            usable_s: length(&quality.usable),
             moved: quality.moved_s,
             usable,
             block: flight.block.iter().copied().step_by(every).collect(),
@@ -114,6 +121,7 @@ impl FlightRecord {
             from_rotors: command_per_speed(log).is_some(),
             commanded: [0, 3].map(|k| log.setpoint.rows.iter().any(|row| row[k].is_finite())),
             imu: std::array::from_fn(|k| thin(&fine.imu[k])),
+            driven: driven(log, &quality.usable),
             fine,
             velocity,
             moves,

@@ -28,6 +28,11 @@ pub fn parts(problem: &Problem) -> Vec<Vec<bool>> {
     (0..PARTS).map(part).collect()
 }
 
+/// Whether a number is the voltage that a flight begins with.
+fn begins(problem: &Problem, k: usize) -> bool {
+    (BEGIN..BEGIN + problem.records.len()).contains(&k)
+}
+
 /// Inner products of the stretches that are not `out`.
 pub fn seen(grams: &Grams, out: &[bool]) -> DMatrix<f64> {
     let n = grams.sum.nrows();
@@ -39,7 +44,7 @@ pub fn seen(grams: &Grams, out: &[bool]) -> DMatrix<f64> {
 /// which is near. The voltage that an unseen flight begins with is no part of what is judged, and stays.
 pub fn without(problem: &Problem, point: &FitPoint, grams: &Grams, out: &[bool]) -> Vec<f64> {
     let mut x = point.x.clone();
-    let moving: Vec<usize> = (0..point.free.len()).filter(|&i| point.free[i] < BEGIN).collect();
+    let moving: Vec<usize> = (0..point.free.len()).filter(|&i| !begins(problem, point.free[i])).collect();
     let gram = seen(grams, out);
     let number = |i: usize| &problem.model.numbers[point.free[i]];
     let prior: Vec<f64> = moving.iter().map(|&i| number(i).trust.powi(-2)).collect();
@@ -69,17 +74,17 @@ pub fn deviations(differences: &[f64]) -> f64 {
 }
 
 /// How surely each of `effects` (the places of its numbers among the fitted ones) pays on unseen flight, in standard
-/// deviations.
-pub fn pays(fitted: &FittedSelection, effects: &[Vec<usize>]) -> Vec<f64> {
+/// deviations, where each of `parts` in turn is unseen.
+pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>]) -> Vec<f64> {
     let (problem, point) = (fitted.problem, fitted.point());
     let whitener = &fitted.selection.whitener;
     let mut gained: Vec<Vec<f64>> = vec![Vec::new(); effects.len()];
-    for out in parts(problem) {
-        let x = without(problem, point, &fitted.grams, &out);
+    for out in parts {
+        let x = without(problem, point, &fitted.grams, out);
         let with = squares(problem, whitener, &x);
-        let gram = seen(&fitted.grams, &out);
+        let gram = seen(&fitted.grams, out);
         for (own, gained) in effects.iter().zip(&mut gained) {
-            let known = |cost: &[f64]| -> f64 { cost.iter().zip(&out).filter(|(_, o)| !**o).map(|(c, _)| c).sum() };
+            let known = |cost: &[f64]| -> f64 { cost.iter().zip(out).filter(|(_, o)| !**o).map(|(c, _)| c).sum() };
             let tried = removed(fitted, &gram, own, &x).map(|x| squares(problem, whitener, &x));
             // What the others make of its absence is chosen by the flight that is known.
             let [a, b] = tried;
@@ -98,7 +103,7 @@ pub fn removed(fitted: &FittedSelection, gram: &DMatrix<f64>, own: &[usize], x: 
     let mut plain = x.to_vec();
     own.iter().for_each(|&i| plain[point.free[i]] = 0.0);
     let mut moved = plain.clone();
-    let rest: Vec<usize> = fitted.rest(own).into_iter().filter(|&i| point.free[i] < BEGIN).collect();
+    let rest: Vec<usize> = fitted.rest(own).into_iter().filter(|&i| !begins(fitted.problem, point.free[i])).collect();
     let prior: Vec<f64> = rest.iter().map(|&i| numbers[point.free[i]].trust.powi(-2)).collect();
     if let Some(inner) = inverse(&Grams::pick(gram, &rest, &rest), &prior) {
         let size = DMatrix::from_iterator(own.len(), 1, own.iter().map(|&i| x[point.free[i]]));

@@ -84,6 +84,13 @@ impl Whitener {
         })
     }
 
+    /// The same with outliers at their full weight.
+    pub fn unweighted(&self) -> Self {
+        let mut copy = self.clone();
+        copy.weight.iter_mut().flatten().filter(|w| **w > 0.0).for_each(|w| *w = 1.0);
+        copy
+    }
+
     /// Square roots of the rows' weights.
     pub fn weights_mut(&mut self) -> &mut ChannelValues {
         &mut self.weight

@@ -150,6 +150,8 @@ pub enum Role {
     CommandsLost,
     /// A random force of this deviation, m/s2, and the time that forgets it, s.
     RandomForce,
+    /// One motor gives less than the others: what they are driven with tells which.
+    OneMotor,
     /// Air that moves alike everywhere: what differs from place to place is something else.
     UniformWind,
 }

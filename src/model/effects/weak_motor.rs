@@ -1,6 +1,6 @@
 //! A motor or propeller that gives less than the others: w += b s.
 
-use super::{BodyRates, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
+use super::{BodyRates, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Role};
 use crate::base::lane::Real;
 
 pub struct WeakMotor;
@@ -19,6 +19,7 @@ impl Effect for WeakMotor {
         writes: &[Quantity::BodyRates],
         reads: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Rate],
+        role: Role::OneMotor,
         signature: "the mean rate without command grows in proportion to the throttle",
         rivals: &["gyro_bias"],
         manoeuvre: ("slow throttle sweeps with the other sticks centred", &["ramp-up", "ramp-down", "punch"]),

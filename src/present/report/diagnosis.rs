@@ -1,6 +1,7 @@
 //! A diagnosis as one page that needs nothing else: the verdict, what was found, what it is worth, what is left,
 //! figures.
 
+mod changes;
 mod figures;
 mod findings;
 mod tables;
@@ -24,12 +25,14 @@ pub fn page(diagnosed: &Diagnosed, figures: &DiagnosisFigures) -> String {
     let d = &diagnosed.diagnosis;
     let body = html! {
         h1 { "What the simulation of " (d.base) " gets wrong" }
+        @if let Some(changes) = &diagnosed.changes { (changes::all(changes)) h2 { "The later flights by themselves" } }
         p class="verdict" { (sentence(&d.headline())) }
         p class="why" {
             (format!("Diagnosed by racer {} from {}.", env!("CARGO_PKG_VERSION"), logs(d)))
             " Before means the compact model, fitted to these flights together with the constant errors of the IMU; \
              after, the same with what was found."
         }
+        (left_out(d))
         (findings::all(d))
         (tables::gain(d))
         (ahead(d, figures))
@@ -63,6 +66,23 @@ fn ahead(d: &Diagnosis, figures: &DiagnosisFigures) -> Markup {
             Some(figure) => { (drawn(figure)) (tables::horizons(d)) }
             None => {
                 p { "These logs hold no velocity, or no commands of the thrust: nothing could be simulated ahead." }
+            }
+        }
+    }
+}
+
+/// Seconds in which something happened.
+fn left_out(d: &Diagnosis) -> Markup {
+    html! {
+        @if !d.left_out.is_empty() {
+            p { "Left out, because something happened there:" }
+            ul {
+                @for l in &d.left_out {
+                    li {
+                        (format!("{:.1} to {:.1} s of {}: ", l.span_s[0], l.span_s[1], l.log))
+                        (l.channel) (format!(" {:.0} times as far off as usual", l.times))
+                    }
+                }
             }
         }
     }

@@ -23,7 +23,8 @@ pub struct Plant {
     pub pack: Pack,
     pub controller: Controller,
     pub resting: bool,
-    shares: Vector4<f64>,
+    /// What the controller asks of the motors, share of full thrust.
+    pub shares: Vector4<f64>,
     /// A frame that rings: deflection and its speed.
     ringing: [f64; 2],
     steps: u64,

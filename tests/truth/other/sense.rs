@@ -105,6 +105,10 @@ impl Recorder {
                 log.imu.push(stamp(time), row);
             }
         }
+        if is_due[0] && !gone {
+            // Speeds that the controllers of the motors are asked for.
+            log.motors.push(stamp(time), racer::flight::motors::row(plant.shares.map(f64::sqrt).as_slice()));
+        }
         if is_due[1] {
             let row = self.odometry(plant, faults);
             if !gone && self.rng.random::<f64>() > LOST {

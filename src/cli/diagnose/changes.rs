@@ -1,0 +1,113 @@
+//! What changed since earlier flights: asked for, and as text.
+
+use super::text::interval;
+use crate::base::check::BadInput;
+use crate::flight::VehicleRecord;
+use crate::flight::spans::length;
+use crate::insight::Watch;
+use crate::insight::criteria::flown::LEAST_FLIGHT_S;
+use crate::insight::diagnose::against::{Both, Change, Changes, WouldShow, compare};
+use crate::insight::diagnose::finding::Status;
+use crate::insight::quality::Quality;
+use crate::model::vehicle::Vehicle;
+use crate::present::report::digits;
+
+/// What changed from the flights `before` to `after`; none where there are no earlier ones.
+pub fn find(
+    before: Vec<Quality>,
+    after: &[Quality],
+    base: &Vehicle,
+    watch: Watch,
+) -> Result<Option<Changes>, BadInput> {
+    if before.is_empty() {
+        return Ok(None);
+    }
+    for quality in before.iter().chain(after) {
+        let seconds = length(&quality.usable);
+        if seconds < LEAST_FLIGHT_S.get() {
+            let found = format!("{}: {seconds:.0} s of usable flight", quality.log.name);
+            let expected = &format!("{:.0} s of flight in every log", LEAST_FLIGHT_S.get());
+            return Err(BadInput::new("--against", found, expected, "`racer check` says what is left out, and why"));
+        }
+    }
+    for (earlier, later) in before.iter().flat_map(|b| after.iter().map(move |a| (b, a))) {
+        comparable(earlier, later)?;
+    }
+    Ok(Some(compare(before, after.to_vec(), base, watch)))
+}
+
+/// Fails where two logs are one, or of two vehicles.
+fn comparable(earlier: &Quality, later: &Quality) -> Result<(), BadInput> {
+    let (a, b) = (&earlier.log, &later.log);
+    let wrong = |found: String, expected, advice| Err(BadInput::new("--against", found, expected, advice));
+    if a.imu == b.imu {
+        let advice = "give the later flights first, and each earlier one after its own --against";
+        return wrong(format!("the same flight as {}: {}", b.name, a.name), "another flight", advice);
+    }
+    if a.vehicle.kind != b.vehicle.kind || a.vehicle.rotors != b.vehicle.rotors {
+        let kind = |v: &VehicleRecord| match (v.kind, v.rotors) {
+            (Some(kind), Some(rotors)) => format!("{kind:?} with {rotors} rotors").to_lowercase(),
+            (Some(kind), None) => format!("{kind:?}").to_lowercase(),
+            _ => "a vehicle of no known kind".into(),
+        };
+        let found = format!("{} of {}, and {} of {}", b.name, kind(&b.vehicle), a.name, kind(&a.vehicle));
+        return wrong(found, "flights of one vehicle", "compare flights of the same vehicle");
+    }
+    Ok(())
+}
+
+/// The answer, each change, what both show, and what would have shown.
+pub fn text(c: &Changes) -> String {
+    let mut out = vec![format!("{}\n   from {} to {}", c.headline(), c.before.join(", "), c.after.join(", "))];
+    out.extend(c.changes.iter().enumerate().map(|(i, change)| format!("{}. {}", i + 1, paragraph(change))));
+    if !c.both.is_empty() {
+        let one = |b: &Both| {
+            let sizes =
+                b.parameters.iter().map(|(n, v)| format!("{n} {} {}", interval(v.value, v.low, v.high), v.unit));
+            format!("{} ({}: {})", b.name, b.effect, sizes.collect::<Vec<_>>().join(", "))
+        };
+        let both: Vec<String> = c.both.iter().map(one).collect();
+        out.push(format!("both show alike, so it is the vehicle's: {}", both.join(", ")));
+    }
+    let (numbers, effects): (Vec<&WouldShow>, Vec<&WouldShow>) = c.would_show.iter().partition(|w| w.large.is_none());
+    let numbers: Vec<String> = numbers.into_iter().map(smallest).collect();
+    out.push(format!("a difference would have shown from: {}", numbers.join(", ")));
+    let hidden = effects.into_iter().filter(|w| w.large.is_some_and(|large| w.smallest > large)).map(|w| w.cause);
+    let hidden: Vec<&str> = hidden.collect();
+    if !hidden.is_empty() {
+        out.push(format!("not even a large difference would have shown of: {}", hidden.join(", ")));
+    }
+    out.join("\n\n")
+}
+
+/// The smallest difference of a number of the compact model that would have been seen.
+fn smallest(w: &WouldShow) -> String {
+    if w.unit == "1" {
+        format!("{} {} %", w.name, digits(100.0 * w.smallest, 100.0 * w.smallest, 2))
+    } else {
+        format!("{} {} {}", w.name, digits(w.smallest, w.smallest, 2), w.unit)
+    }
+}
+
+fn paragraph(c: &Change) -> String {
+    let status = match c.status {
+        Status::Named => String::new(),
+        Status::NamedSet => format!(" - or {}: these flights do not tell them apart", c.members[1..].join(", ")),
+        Status::Suspected => format!(" - suspected only: {}", c.why.as_deref().unwrap_or("")),
+    };
+    let rows = c.difference.iter().filter_map(|(name, d)| {
+        let (before, after) = (c.before.get(name)?, c.after.get(name)?);
+        let [was, is] = [before, after].map(|v| digits(v.value, (v.high - v.low).max(d.high - d.low), 2));
+        let difference = interval(d.value, d.low, d.high);
+        Some(format!("\n   {name} was {was}, is {is} {}; difference {difference}", d.unit))
+    });
+    format!(
+        "{} ({}){status}\n   {}{}\n   {:.0} standard deviations; {:.2} m/s after a second",
+        c.name,
+        c.cause,
+        c.sentence,
+        rows.collect::<String>(),
+        c.deviations,
+        c.impact
+    )
+}

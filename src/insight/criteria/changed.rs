@@ -1,0 +1,28 @@
+//! Has the vehicle changed between two sets of flights?
+
+use super::criteria;
+
+criteria! {
+    "Has it changed?";
+
+    /// Chance of a difference of such a size, times the number of causes that were tried, up to which it is evident.
+    CHANGED_CHANCE = 1e-3, Theory("a false alarm in a thousand comparisons, were the stretches of time independent");
+    /// Standard deviations between flights of one set that a difference of the sets has to be.
+    BETWEEN_DEVIATIONS = 3.0, Assumed("two or three flights tell their spread badly");
+    /// Share of a difference that every third of the time has to show.
+    LASTING_SHARE = 0.3, Assumed("a third that holds a tenth of what is known errs by as much");
+    /// Share of what is known of a difference from which a third of the time is asked.
+    LASTING_KNOWN = 0.1, Assumed("less is chance");
+    /// Change of the thrust over mass that matters, as a share.
+    CHANGED_THRUST = 0.025, Assumed("thrust by square of rotor speed differed by 2 % between flights of one vehicle");
+    /// Of the drag along any axis.
+    CHANGED_DRAG = 0.15, Assumed("half as much again as a move against the base that matters");
+    /// Of a time constant.
+    CHANGED_TIME_CONSTANT = 0.08, Assumed("half as much again as a move against the base that matters");
+    /// Of a full-stick rate.
+    CHANGED_RATE = 0.015, Assumed("that of a move against the base that matters");
+    /// Of the discharge.
+    CHANGED_DISCHARGE = 0.2, Assumed("that of a move against the base that matters");
+    /// Differences that are looked for at most.
+    MOST_CHANGES = 5.0, Assumed("more is another vehicle");
+}

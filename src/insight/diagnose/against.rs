@@ -1,0 +1,117 @@
+//! What changed between two sets of flights of one vehicle.
+//!
+//! All flights are fitted as one vehicle's, with the effects that they show together ([`super::select`]). Then each
+//! number of the compact model and each effect may differ between the sets ([`suspect`]); a score test ranks the
+//! differences beside the same cause in both sets ([`columns`]), the best are fitted ([`search`]) and judged
+//! ([`judge`]). What the model gets wrong of both sets alike is no difference.
+
+mod change;
+mod columns;
+mod judge;
+mod motor;
+mod search;
+mod sizes;
+mod suspect;
+
+use super::accident;
+use super::contrast::Contrast;
+use super::finding::{Diagnosis, Status};
+use super::fitted::FittedSelection;
+use super::problem::Problem;
+use super::select::Selection;
+use super::shown;
+use super::size::is_material;
+use crate::insight::Watch;
+use crate::insight::criteria::flown::SEEN_DEVIATIONS;
+use crate::insight::quality::Quality;
+use crate::model::vehicle::Vehicle;
+pub use change::{Both, Change, Changes, WouldShow};
+use columns::Tested;
+use search::{Found, Search};
+use suspect::Suspect;
+
+/// What changed from the flights `before` to the flights `after`, of a vehicle that is thought to be `vehicle`.
+pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Changes {
+    let later: Vec<bool> = before.iter().map(|_| false).chain(after.iter().map(|_| true)).collect();
+    let all = before.into_iter().chain(after).collect();
+    let (mut problem, selection, left_out) =
+        accident::select_steady(all, vehicle, &mut |step, share| watch(step, 0.5 * share));
+    let suspects = suspect::known(&problem);
+    let contrast = Contrast::new(&mut problem.model, later);
+    let suspects: Vec<Suspect> = suspects.into_iter().map(|s| s.in_contrast(&contrast)).collect();
+    problem.contrast = Some(contrast);
+    watch("comparing", 0.5);
+    let search = Search::new(&problem, &suspects, &selection.whitener, &selection.point).run();
+    let would_show = would_show(&problem, &search.tested, &suspects);
+    let (found, searched) = (reported(&search, &suspects), search.found.len());
+    let point = search.point.clone();
+    let whitener = selection.whitener.clone();
+    let selection = Selection { point, whitener, ..selection };
+    let fitted = FittedSelection::new(&problem, &selection);
+    Changes { would_show, left_out, ..changes(&fitted, &suspects, &found, searched) }
+}
+
+impl Changes {
+    /// Of what both sets show alike, only what the later flights name by themselves.
+    pub fn confirm(&mut self, later: &Diagnosis) {
+        let named = |id: &str| later.findings.iter().any(|f| f.effect == id && f.status != Status::Suspected);
+        self.both.retain(|both| named(both.effect));
+    }
+}
+
+/// Differences that were found, and those that every fit allows for.
+fn reported(search: &Search, suspects: &[Suspect]) -> Vec<Found> {
+    let known = |suspect: usize| search.found.iter().any(|f| f.suspect == suspect);
+    let own = |s: &Suspect| !s.own.is_empty() && s.own.iter().all(|k| search.point.free.contains(k));
+    let allowed = (0..suspects.len()).filter(|&s| !known(s) && own(&suspects[s]));
+    search.found.iter().cloned().chain(allowed.map(|suspect| Found { suspect, ties: Vec::new() })).collect()
+}
+
+/// The answer, of what was `found`; after the first so many come those that every fit allows for.
+fn changes(fitted: &FittedSelection, suspects: &[Suspect], found: &[Found], searched: usize) -> Changes {
+    let places: Vec<Vec<usize>> = found.iter().map(|f| judge::places(fitted, &suspects[f.suspect])).collect();
+    let pays = judge::pays(fitted, &places);
+    let judged = found.iter().zip(pays).map(|(found, pays)| judge::judge(fitted, suspects, found, pays));
+    // What every fit allows for is worth a word where it is named.
+    let worth = |(i, c): &(usize, Change)| *i < searched || c.status != Status::Suspected;
+    let mut changes: Vec<Change> = judged.enumerate().filter(worth).map(|(_, c)| c).collect();
+    if let Some(motor) = motor::find(fitted.problem) {
+        changes.retain(|c| c.cause != motor.cause);
+        changes.push(motor);
+    }
+    let rank = |c: &Change| c.deviations + if c.status == Status::Suspected { 0.0 } else { 1e9 };
+    changes.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+    let named = |id: &str| changes.iter().any(|c| c.cause == id && c.status != Status::Suspected);
+    let x = &fitted.point().x;
+    let alike = fitted.selection.added.iter().filter(|a| !named(a.card.id) && is_material(a.card, x));
+    let both = alike
+        .map(|a| Both { effect: a.card.id, name: a.card.name, parameters: shown::parameters(fitted, a.card) })
+        .collect();
+    let changed = changes.iter().any(|c| c.status != Status::Suspected);
+    let [before, after] = [false, true].map(|set| names(fitted.problem, set));
+    Changes { changed, before, after, changes, both, would_show: Vec::new(), left_out: Vec::new() }
+}
+
+/// Names of the logs of a set.
+fn names(problem: &Problem, later: bool) -> Vec<String> {
+    let sets = problem.contrast.iter().flat_map(|c| &c.later);
+    problem.records.iter().zip(sets).filter(|(_, set)| **set == later).map(|(r, _)| r.name.clone()).collect()
+}
+
+/// The smallest differences that would have been seen, each where it is seen best.
+fn would_show(problem: &Problem, tested: &[Tested], suspects: &[Suspect]) -> Vec<WouldShow> {
+    let mut out: Vec<WouldShow> = Vec::new();
+    for t in tested {
+        let spread: f64 = t.score.blocks.iter().map(|(_, u)| u[(0, 0)].powi(2)).sum::<f64>().sqrt();
+        let size = t.direction.as_ref().map_or(1.0, |d| d.start[0].1.abs());
+        let smallest = SEEN_DEVIATIONS.get() * spread / t.score.information[0].max(1e-300) * size;
+        let suspect = &suspects[t.suspect];
+        let unit = suspect.own.first().map_or("1", |&k| problem.model.numbers[k].unit);
+        let large = suspect.card.map(|card| card.parameters[0].typical[1]);
+        match out.iter_mut().find(|w| w.cause == suspect.id) {
+            Some(known) => known.smallest = known.smallest.min(smallest),
+            None => out.push(WouldShow { cause: suspect.id, name: suspect.name, smallest, large, unit }),
+        }
+    }
+    out
+}

@@ -1,0 +1,192 @@
+//! Which differences explain what two sets of flights do not show alike: rank by score, fit the best, keep the best of
+//! them, and again.
+
+use super::columns::{Tested, tests};
+use super::suspect::Suspect;
+use crate::insight::criteria::changed::MOST_CHANGES;
+use crate::insight::criteria::evident::{BOUNDED_MERIT, GAIN_WORTH_A_FIT, LEAST_GAIN, SHORT_LIST};
+use crate::insight::criteria::rival::{RIVAL_KEEPS, TIE_DEVIATIONS};
+use crate::insight::diagnose::candidates::{Candidate, candidates};
+use crate::insight::diagnose::fit::{self, FitPoint};
+use crate::insight::diagnose::numbers::span;
+use crate::insight::diagnose::problem::Problem;
+use crate::insight::diagnose::size::is_bounded;
+use crate::insight::diagnose::whiten::Whitener;
+use crate::model::effects::{self, Card, Role, are_rivals};
+use rayon::prelude::*;
+
+/// A difference that was found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Place among the suspects.
+    pub suspect: usize,
+    /// Places of what these flights do not tell from it.
+    pub ties: Vec<usize>,
+}
+
+/// A suspect that was tried.
+struct Tried {
+    suspect: usize,
+    point: FitPoint,
+    /// Fall of the whitened squares by the difference, beside the same cause in both sets.
+    gain: f64,
+}
+
+/// A search for differences.
+pub struct Search<'a> {
+    problem: &'a Problem,
+    pub suspects: &'a [Suspect],
+    pub whitener: &'a Whitener,
+    pub point: FitPoint,
+    pub found: Vec<Found>,
+    /// What was tested last.
+    pub tested: Vec<Tested>,
+    /// What nearly took the place of the last one found, with its gain.
+    pending: Vec<(usize, f64)>,
+    candidates: Vec<Candidate>,
+}
+
+impl<'a> Search<'a> {
+    /// From `point`, which both sets have in common. Constant errors and clocks are each set's own.
+    pub fn new(problem: &'a Problem, suspects: &'a [Suspect], whitener: &'a Whitener, point: &FitPoint) -> Self {
+        let contrast = problem.contrast.as_ref();
+        let own = [Role::ConstantError, Role::OdometryLate].into_iter().flat_map(effects::acting).flat_map(span);
+        let own = own.filter(|k| point.free.contains(k)).filter_map(|k| contrast.and_then(|c| c.of(k)));
+        let free: Vec<usize> = point.free.iter().copied().chain(own).collect();
+        let mut x = point.x.clone();
+        x.resize(problem.model.numbers.len(), 0.0);
+        let point = fit::fit(problem, whitener, &x, &free);
+        let cards: Vec<&'static Card> = suspects.iter().filter_map(|s| s.card).collect();
+        let held = |card: &Card| span(card).any(|k| point.free.contains(&k));
+        let cards: Vec<_> = cards.into_iter().filter(|card| !held(card)).collect();
+        let candidates = candidates(problem, whitener, &point, &cards);
+        let (found, tested, pending) = (Vec::new(), Vec::new(), Vec::new());
+        Self { problem, suspects, whitener, point, found, tested, pending, candidates }
+    }
+
+    /// Adds differences until none is worth it.
+    pub fn run(mut self) -> Self {
+        for round in 0..=MOST_CHANGES.count() {
+            let mut order = tests(self.problem, self.whitener, &self.point, self.suspects, &self.candidates);
+            order.sort_by(|a, b| b.score.gain.total_cmp(&a.score.gain));
+            self.keep_ties(&order);
+            let ends = round == MOST_CHANGES.count() || !self.add(&order);
+            self.tested = order;
+            if ends {
+                break;
+            }
+        }
+        self
+    }
+
+    /// Of what nearly took the place of the last one found, that which loses its gain beside it.
+    fn keep_ties(&mut self, order: &[Tested]) {
+        let Some(last) = self.found.last_mut() else { return };
+        let still =
+            |suspect: usize| order.iter().filter(|t| t.suspect == suspect).map(|t| t.score.gain).fold(0.0, f64::max);
+        let ties = self.pending.drain(..).filter(|(suspect, gain)| still(*suspect) < RIVAL_KEEPS.get() * gain);
+        last.ties = ties.map(|(suspect, _)| suspect).collect();
+    }
+
+    fn add(&mut self, order: &[Tested]) -> bool {
+        let chosen = self.chosen(order);
+        let mut tried: Vec<Tried> = chosen.par_iter().filter_map(|&suspect| self.best(suspect, order)).collect();
+        let merit = |t: &Tried| t.gain * if self.bounded(t) { BOUNDED_MERIT.get() } else { 1.0 };
+        tried.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+        let Some(best) = tried.first() else { return false };
+        let own = self.suspects[best.suspect].own.len() as f64;
+        if merit(best) < LEAST_GAIN.get() + own {
+            return false;
+        }
+        let near = tried.iter().skip(1).filter(|t| tied(best, t));
+        self.pending = near.map(|t| (t.suspect, t.gain)).collect();
+        self.found.push(Found { suspect: best.suspect, ties: Vec::new() });
+        let point = fit::fit(self.problem, self.whitener, &best.point.x, &best.point.free);
+        self.point = point;
+        true
+    }
+
+    /// Suspects that are worth a fit, the best first, and the rivals of the very first.
+    fn chosen(&self, order: &[Tested]) -> Vec<usize> {
+        let mut chosen: Vec<usize> = Vec::new();
+        for tested in order.iter().filter(|t| t.score.gain > GAIN_WORTH_A_FIT.get()) {
+            let card = |suspect: usize| self.suspects[suspect].card;
+            let leader = chosen.first().and_then(|&first| card(first));
+            let rival = leader.zip(card(tested.suspect)).is_some_and(|(a, b)| are_rivals(a, b));
+            if !chosen.contains(&tested.suspect) && (chosen.len() < SHORT_LIST.count() || rival) {
+                chosen.push(tested.suspect);
+            }
+        }
+        chosen
+    }
+
+    /// A suspect, fitted from the directions that the score thinks most of.
+    fn best(&self, suspect: usize, order: &[Tested]) -> Option<Tried> {
+        let of = order.iter().filter(|t| t.suspect == suspect);
+        // Late signals fit at more than one delay.
+        let starts = match self.suspects[suspect].card {
+            Some(card) if card.parameters[0].unit == "s" => 4,
+            _ => 1,
+        };
+        let tried = of.take(starts).map(|tested| self.fitted(tested));
+        tried.max_by(|a, b| a.gain.total_cmp(&b.gain))
+    }
+
+    /// A suspect fitted as `tested` expects it, and what its difference gains.
+    fn fitted(&self, tested: &Tested) -> Tried {
+        let (problem, point) = (self.problem, &self.point);
+        let suspect = &self.suspects[tested.suspect];
+        let unknown = |k: &usize| !point.free.contains(k);
+        let common: Vec<usize> = suspect.card.iter().flat_map(|card| span(card)).filter(unknown).collect();
+        let own: Vec<usize> = common.iter().chain(&suspect.own).copied().collect();
+        let with = fit::refit(problem, self.whitener, point, &own, &self.start(suspect, tested));
+        let alike = if common.is_empty() {
+            point.total()
+        } else {
+            let mut x = with.x.clone();
+            for k in suspect.numbers.clone() {
+                let difference = problem.contrast.as_ref().and_then(|c| c.of(k));
+                let Some(d) = difference.filter(|d| suspect.own.contains(d)) else { continue };
+                x[k] += 0.5 * std::mem::take(&mut x[d]);
+                x[k] = x[k].clamp(problem.model.numbers[k].low, problem.model.numbers[k].high);
+            }
+            fit::refit(problem, self.whitener, point, &common, &x).total().min(point.total())
+        };
+        Tried { suspect: tested.suspect, gain: alike - with.total(), point: with }
+    }
+
+    /// Where the fit of a suspect begins: an effect of later flights, or of the earlier ones.
+    fn start(&self, suspect: &Suspect, tested: &Tested) -> Vec<f64> {
+        let mut x = self.point.x.clone();
+        let Some(direction) = &tested.direction else { return x };
+        let size = tested.expected.abs().clamp(0.2, 3.0);
+        for (k, start) in &direction.start {
+            let difference = self.problem.contrast.as_ref().and_then(|c| c.of(*k));
+            let number = &self.problem.model.numbers[*k];
+            match difference.filter(|d| suspect.own.contains(d)) {
+                Some(d) if tested.expected > 0.0 => x[d] = (start * size).clamp(number.low, number.high),
+                Some(d) => {
+                    x[*k] = (start * size).clamp(number.low, number.high);
+                    x[d] = -x[*k];
+                }
+                None => x[*k] = *start,
+            }
+        }
+        x
+    }
+
+    /// Whether an effect ends at a bound in either set: then it stands in for something else.
+    fn bounded(&self, tried: &Tried) -> bool {
+        let Some(card) = self.suspects[tried.suspect].card else { return false };
+        let flights = [0, self.problem.records.len() - 1];
+        flights.into_iter().any(|f| is_bounded(self.problem, card, &self.problem.numbers(f, &tried.point.x)))
+    }
+}
+
+/// Whether stretches of time do not decide between the best and another.
+fn tied(best: &Tried, other: &Tried) -> bool {
+    let differences: Vec<f64> = other.point.cost.iter().zip(&best.point.cost).map(|(a, b)| a - b).collect();
+    let sum: f64 = differences.iter().sum();
+    let spread = differences.iter().map(|d| d * d).sum::<f64>().sqrt();
+    other.gain > LEAST_GAIN.get() && sum < TIE_DEVIATIONS.get() * spread
+}

@@ -1,0 +1,120 @@
+//! What may differ between two sets of flights of one vehicle: numbers of the compact model, and effects.
+
+use crate::insight::criteria::Criterion;
+use crate::insight::criteria::changed::{
+    CHANGED_DISCHARGE, CHANGED_DRAG, CHANGED_RATE, CHANGED_THRUST, CHANGED_TIME_CONSTANT,
+};
+use crate::insight::diagnose::candidates::base_numbers;
+use crate::insight::diagnose::contrast::Contrast;
+use crate::insight::diagnose::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
+use crate::insight::diagnose::problem::Problem;
+use crate::model::effects::{self, Card, Role};
+use std::ops::Range;
+
+/// Something that may differ.
+#[derive(Clone, Debug)]
+pub struct Suspect {
+    pub id: &'static str,
+    pub name: &'static str,
+    pub sentence: &'static str,
+    /// The effect that it is; none of a number of the compact model.
+    pub card: Option<&'static Card>,
+    /// Numbers of the vehicle that it is about, and the share of them that matters, of the compact model.
+    pub numbers: Range<usize>,
+    pub matters: f64,
+    /// Differences of those numbers.
+    pub own: Vec<usize>,
+}
+
+/// Id, name, sentence, numbers and share that matters.
+type Row = (&'static str, &'static str, &'static str, Range<usize>, &'static Criterion);
+
+/// Numbers of the compact model that a workshop changes.
+fn compact() -> [Row; 7] {
+    let tau = TAU.start;
+    [
+        (
+            "thrust",
+            "thrust over mass",
+            "the same throttle pushes by another share: other propellers or motors, another mass",
+            THRUST,
+            &CHANGED_THRUST,
+        ),
+        ("drag", "drag", "the air brakes it more or less: other parts outside", DRAG, &CHANGED_DRAG),
+        (
+            "thrust_response",
+            "response of the thrust",
+            "thrust follows its command more slowly or quickly: motors, propellers, their controllers",
+            tau + 3..tau + 4,
+            &CHANGED_TIME_CONSTANT,
+        ),
+        (
+            "rate_response",
+            "response of roll and pitch",
+            "roll and pitch follow the sticks more slowly or quickly: gains, filters, inertia",
+            tau..tau + 2,
+            &CHANGED_TIME_CONSTANT,
+        ),
+        (
+            "yaw_response",
+            "response of yaw",
+            "yaw follows the stick more slowly or quickly: gains, filters, inertia",
+            tau + 2..tau + 3,
+            &CHANGED_TIME_CONSTANT,
+        ),
+        (
+            "full_stick_rates",
+            "full-stick rates",
+            "full sticks ask for other rates: another rate profile",
+            MAX_RATE,
+            &CHANGED_RATE,
+        ),
+        (
+            "discharge",
+            "discharge of the pack",
+            "the voltage falls faster or more slowly: another pack, or an older one",
+            DISCHARGE..DISCHARGE + 1,
+            &CHANGED_DISCHARGE,
+        ),
+    ]
+}
+
+/// Whether an effect may differ: its mean shows, and it is no accident of one log.
+fn can_differ(card: &Card, one_clock: bool) -> bool {
+    match card.role {
+        Role::RandomForce | Role::OdometryLate | Role::ImuLate | Role::CommandsLost => false,
+        Role::ClockFast => !one_clock,
+        _ => true,
+    }
+}
+
+/// All suspects that the flights of `problem` tell anything about, before it has a contrast.
+pub fn known(problem: &Problem) -> Vec<Suspect> {
+    let told = base_numbers(problem);
+    let one_clock = problem.records.iter().all(|r| r.one_clock);
+    let numbers = compact().into_iter().filter(|(.., numbers, _)| numbers.clone().any(|k| told.contains(&k)));
+    let numbers = numbers.map(|(id, name, sentence, numbers, matters)| {
+        let matters = matters.get();
+        Suspect { id, name, sentence, card: None, numbers, matters, own: Vec::new() }
+    });
+    let cards = effects::cards().filter(|card| can_differ(card, one_clock)).map(|card| Suspect {
+        id: card.id,
+        name: card.name,
+        sentence: card.sentence,
+        card: Some(card),
+        numbers: span(card),
+        matters: 0.0,
+        own: Vec::new(),
+    });
+    numbers.chain(cards).collect()
+}
+
+impl Suspect {
+    /// With the differences of its sizes. The shape of an effect is the vehicle's, before and after.
+    pub fn in_contrast(mut self, contrast: &Contrast) -> Self {
+        let shape = self.card.and_then(|card| card.shape).map(|i| self.numbers.start + i);
+        self.own = self.numbers.clone().filter(|k| Some(*k) != shape).filter_map(|k| contrast.of(k)).collect();
+        self.own.dedup();
+        self
+    }
+}

@@ -1,0 +1,72 @@
+//! What changed between two flights of one vehicle: the change and nothing else, and nothing where nothing did.
+
+use crate::truth::Vehicle;
+use crate::truth::effects::Hidden;
+use crate::truth::hidden::{Setting, Style, fly};
+use racer::flight::Log;
+use racer::insight::diagnose::against::{Changes, compare};
+use racer::insight::quality::check;
+use rand::SeedableRng;
+use rand::rngs::StdRng;
+
+/// Seeds of the vehicle and of the effects that both flights have; each flight has one of its own.
+const SEED: u64 = 71;
+
+fn flown(vehicle: &Vehicle, seed: u64, effects: &[(&str, f64)]) -> Log {
+    let mut rng = StdRng::seed_from_u64(SEED);
+    let hidden: Vec<Hidden> = effects.iter().map(|(id, size)| Hidden::sized(id, *size, vehicle, &mut rng)).collect();
+    fly(vehicle, &hidden, &Setting { seed, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited })
+}
+
+fn compared(before: &Log, after: &Log) -> Changes {
+    let vehicle = Vehicle::draw(SEED).in_racer();
+    compare(vec![check(before)], vec![check(after)], &vehicle, &mut |_, _| ())
+}
+
+fn named(changes: &Changes) -> Vec<&str> {
+    changes.named().map(|change| change.cause).collect()
+}
+
+#[test]
+fn what_both_flights_have_is_no_change() {
+    let vehicle = Vehicle::draw(SEED);
+    let both = [("axial_inflow", 0.6)];
+    let changes = compared(&flown(&vehicle, 1, &both), &flown(&vehicle, 2, &both));
+    assert!(!changes.changed && named(&changes).is_empty(), "{:?}", named(&changes));
+    assert!(changes.both.iter().any(|b| b.effect == "axial_inflow"));
+    let seen = changes.would_show.iter().find(|w| w.cause == "thrust").expect("the thrust can be compared");
+    assert!(seen.smallest > 0.0 && seen.smallest < 0.05, "{}", seen.smallest);
+}
+
+#[test]
+fn an_effect_that_came_is_named_with_its_size() {
+    let vehicle = Vehicle::draw(SEED);
+    let both = [("axial_inflow", 0.6)];
+    let changes = compared(&flown(&vehicle, 1, &both), &flown(&vehicle, 2, &[both[0], ("rotor_drag", 0.3)]));
+    assert_eq!(named(&changes), ["rotor_drag"]);
+    let k = &changes.changes[0].difference["k"];
+    assert!((k.value - 0.3).abs() < 0.05 && k.low > 0.0, "{k:?}");
+}
+
+/// As after a repair: the earlier flight is late, the later one is not.
+#[test]
+fn an_effect_that_went_is_named_with_its_size() {
+    let vehicle = Vehicle::draw(SEED);
+    let changes = compared(&flown(&vehicle, 1, &[("thrust_delay", 0.02)]), &flown(&vehicle, 2, &[]));
+    assert_eq!(named(&changes), ["thrust_delay"]);
+    let delay = &changes.changes[0].difference["delay"];
+    assert!((delay.value + 0.02).abs() < 2e-3, "{delay:?}");
+}
+
+/// Another propeller: a number of the compact model, and no effect.
+#[test]
+fn thrust_that_is_less_is_named_as_such() {
+    let vehicle = Vehicle::draw(SEED);
+    let mut weaker = vehicle.clone();
+    weaker.thrust_n.iter_mut().for_each(|c| *c *= 0.9);
+    let changes = compared(&flown(&vehicle, 1, &[]), &flown(&weaker, 2, &[]));
+    assert_eq!(named(&changes), ["thrust"]);
+    let thrust = changes.changes[0].difference.values().next().expect("a size");
+    let before = changes.changes[0].before.values().next().expect("a size");
+    assert!((thrust.value / before.value + 0.1).abs() < 0.02, "{thrust:?} of {before:?}");
+}
