@@ -75,10 +75,24 @@ impl Contrast {
         let mut own = x.to_vec();
         for (moves, by) in self.moves.iter().zip(&x[self.first..]).filter(|(_, by)| **by != 0.0) {
             match moves {
-                Moves::By(k) => own[*k] = (x[*k] + by).clamp(model.numbers[*k].low, model.numbers[*k].high),
+                Moves::By(k) => own[*k] = within(x[*k] + by, &model.numbers[*k]),
                 Moves::Share(range) => range.clone().for_each(|k| own[k] = x[k] * (1.0 + by)),
             }
         }
         own.into()
     }
+}
+
+/// A value within the bounds of its number. One beyond is reflected: there too a difference has to have a slope, or
+/// nothing would be known of an effect that went.
+fn within(value: f64, number: &ModelNumber) -> f64 {
+    let ModelNumber { low, high, .. } = *number;
+    let reflected = if value < low {
+        2.0 * low - value
+    } else if value > high {
+        2.0 * high - value
+    } else {
+        value
+    };
+    reflected.clamp(low, high)
 }
