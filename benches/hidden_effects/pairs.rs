@@ -46,8 +46,8 @@ const ALSO: [(&str, &[&str]); 9] = [
     ("drag_linear", &["drag"]),
 ];
 
-/// Causes that have no direction of their own, so that both flights have the same; and those whose mean tells nothing
-/// of a vehicle.
+/// Causes that have no direction of their own, so that both flights have the same; and those that are no change: what
+/// has no mean, and a gyro's constant error of a size that every switching on brings.
 const ALIKE: [&str; 12] = [
     "drag_root",
     "drag_linear",
@@ -62,7 +62,7 @@ const ALIKE: [&str; 12] = [
     "vibration_speed",
     "velocity_delay",
 ];
-const NO_CHANGE: [&str; 2] = ["stirred_air", "link_jitter"];
+const NO_CHANGE: [&str; 3] = ["stirred_air", "link_jitter", "gyro_warm"];
 
 /// What differs between the flights of a pair.
 #[derive(Debug)]

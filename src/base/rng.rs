@@ -32,6 +32,8 @@ pub enum RngStream {
     Bootstrap = 9,
     /// First laps that a reference lap is looked for from.
     Reference = 10,
+    /// Frequencies of a regression's random features.
+    Features = 11,
 }
 
 /// The generator's key.

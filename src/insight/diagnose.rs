@@ -28,6 +28,7 @@ pub mod finding;
 pub mod findings;
 pub mod fit;
 pub mod fitted;
+pub mod flexible;
 pub mod folds;
 pub mod forms;
 pub mod gain;

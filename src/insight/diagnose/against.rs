@@ -24,6 +24,7 @@ use super::size::is_material;
 use crate::insight::Watch;
 use crate::insight::criteria::flown::SEEN_DEVIATIONS;
 use crate::insight::quality::Quality;
+use crate::model::effects::{self, Role};
 use crate::model::vehicle::Vehicle;
 pub use change::{Both, Change, Changes, WouldShow};
 use columns::Tested;
@@ -79,7 +80,14 @@ fn changes(fitted: &FittedSelection, suspects: &[Suspect], found: &[Found], sear
         changes.retain(|c| c.cause != motor.cause);
         changes.push(motor);
     }
-    let rank = |c: &Change| c.deviations + if c.status == Status::Suspected { 0.0 } else { 1e9 };
+    // Constant errors of sensors are others after every switching on: what the vehicle does comes first.
+    let constant = |c: &Change| effects::card(c.cause).is_some_and(|card| card.role == Role::ConstantError);
+    let place = |c: &Change| match c.status {
+        Status::Suspected => 0.0,
+        _ if constant(c) => 1e9,
+        _ => 2e9,
+    };
+    let rank = |c: &Change| c.deviations + place(c);
     changes.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
     let named = |id: &str| changes.iter().any(|c| c.cause == id && c.status != Status::Suspected);
     let x = &fitted.point().x;

@@ -4,10 +4,11 @@
 use super::channels::{CHANNELS, NAMES};
 use super::finding::{Ahead, Gain};
 use super::fit::{self, FitPoint};
+use super::flexible;
 use super::horizon;
 use super::numbers::{BEGIN, ModelNumber};
 use super::problem::Problem;
-use super::select::{self, Selection};
+use super::select::Selection;
 use super::whiten::Whitener;
 use crate::base::stats::mean;
 use crate::insight::criteria::flown::{HELD_OUT_ROWS, WORTH_GAINING};
@@ -53,7 +54,7 @@ fn held_out(problem: &Problem) -> Vec<bool> {
 }
 
 /// Fits on the one part, predicts the other: the base, and what is `kept` of the `selection`. What could be gained at
-/// most is what all that was tried would.
+/// most is what a flexible regression gains beyond that.
 pub fn measure(problem: &Problem, selection: &Selection, kept: &Selection) -> HeldOut {
     let out = held_out(problem);
     let train = selection.whitener.without(&problem.rows, &out);
@@ -75,7 +76,9 @@ pub fn measure(problem: &Problem, selection: &Selection, kept: &Selection) -> He
     };
     let squares = |p: &FitPoint| fit::costs(problem, &test.apply(&p.residual, &problem.rows)).iter().sum::<f64>();
     let (before, after) = (squares(&base), squares(&extended));
-    let floor = after - select::left_to_gain(problem, &test, &extended, selection);
+    // What a regression on the signals learns from the one part, and tells on the other.
+    let corrected = flexible::corrected(problem, &extended, &out);
+    let floor = fit::costs(problem, &test.apply(&corrected, &problem.rows)).iter().sum::<f64>().min(after);
     let captured = (before > WORTH_GAINING.get() * floor).then(|| (before - after) / (before - floor).max(1e-9));
     HeldOut {
         channels: channels(problem, &base, &extended, &out),

@@ -197,20 +197,6 @@ fn saturated(problem: &Problem, whitener: &Whitener, point: &FitPoint, found: &[
     Whitener::of(&left, &problem.rows)
 }
 
-/// By how much the whitened squares of `point` would still fall if every number and every cause were fitted, less what
-/// that takes of the noise alone.
-pub fn left_to_gain(problem: &Problem, whitener: &Whitener, point: &FitPoint, selection: &Selection) -> f64 {
-    let own = fit::whitened_slopes(problem, whitener, &point.state, &point.x, &selection.point.free);
-    let causes: Vec<ChannelValues> =
-        selection.others.par_iter().map(|c| whitener.apply(&c.change, &problem.rows)).collect();
-    let residual = whitener.apply(&point.residual, &problem.rows);
-    let all: Vec<&ChannelValues> = own.iter().chain(&causes).chain([&residual]).collect();
-    let grams = Grams::new(&all, &problem.rows, problem.blocks);
-    let Some((beta, n)) = together(&grams) else { return 0.0 };
-    let along = Grams::pick(&grams.sum, &(0..n).collect::<Vec<_>>(), &[n]);
-    ((beta.transpose() * along)[(0, 0)] - n as f64).max(0.0)
-}
-
 /// All columns of `grams` but the last, fitted to the last, and how many they are.
 fn together(grams: &Grams) -> Option<(DMatrix<f64>, usize)> {
     let n = grams.sum.nrows() - 1;

@@ -7,8 +7,10 @@ use super::search::Found;
 use super::sizes;
 use super::suspect::Suspect;
 use crate::base::stats::chi_squared_chance;
-use crate::insight::criteria::changed::{BETWEEN_DEVIATIONS, CHANGED_CHANCE, LASTING_KNOWN, LASTING_SHARE};
-use crate::insight::criteria::material::{LEAST_IMPACT, LEAST_SENSOR_IMPACT, MATERIAL_BIAS, MATERIAL_SIZE};
+use crate::insight::criteria::changed::{
+    BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, LASTING_KNOWN, LASTING_SHARE,
+};
+use crate::insight::criteria::material::{LEAST_IMPACT, LEAST_SENSOR_IMPACT, MATERIAL_SIZE};
 use crate::insight::criteria::unseen::PAYS_DEVIATIONS;
 use crate::insight::diagnose::finding::Status;
 use crate::insight::diagnose::fitted::FittedSelection;
@@ -107,7 +109,7 @@ fn chance(fitted: &FittedSelection, own: &[usize]) -> (f64, f64) {
 fn matters(fitted: &FittedSelection, suspect: &Suspect) -> bool {
     let x = &fitted.point().x;
     let Some(card) = suspect.card else { return sizes::share(fitted, suspect) > suspect.matters };
-    let least = if card.role == Role::ConstantError { MATERIAL_BIAS.get() } else { MATERIAL_SIZE.get() };
+    let least = if card.role == Role::ConstantError { CHANGED_BIAS.get() } else { MATERIAL_SIZE.get() };
     let share =
         |(k, (_, p)): (&usize, (usize, &crate::model::effects::EffectParameter))| (x[*k] / p.typical[0]).powi(2);
     suspect.own.iter().zip(card.sizes()).map(share).sum::<f64>().sqrt() >= least
@@ -123,14 +125,13 @@ fn unlasting(fitted: &FittedSelection, own: &[usize]) -> Option<String> {
     let prior: Vec<f64> = (0..point.free.len()).map(number).chain([0.0]).collect();
     let score = score(&fitted.grams, &rest, &[main], point.free.len(), &prior)?;
     let size = point.x[point.free[main]];
-    let later = later(problem);
     for part in thirds(problem) {
-        let (off, known) = moved(&score, |b| part[b] && later[b]);
+        let (off, known) = moved(&score, |b| part[b]);
         if known > LASTING_KNOWN.get() && (size + off) / size < LASTING_SHARE.get() {
             return Some("not every third of the flights shows it".into());
         }
     }
-    let spread = between(problem, &score, &later);
+    let spread = between(problem, &score, &later(problem));
     (size.abs() < BETWEEN_DEVIATIONS.get() * spread).then(|| "flights of one set differ by as much".into())
 }
 
@@ -151,7 +152,9 @@ fn between(problem: &Problem, score: &ScoreTest, later: &[bool]) -> f64 {
     let flight = |f: usize| {
         let blocks = &problem.records[f].block;
         let range = blocks.first().map_or(0, |b| *b as usize)..=blocks.last().map_or(0, |b| *b as usize);
-        (later[*range.start()], moved(score, |b| range.contains(&b)).0)
+        let set = later[*range.start()];
+        // The other set takes its part of the difference: the whole residual of a flight is what only a share explains.
+        (set, moved(score, |b| range.contains(&b)).0 * moved(score, |b| later[b] == set).1)
     };
     let flights: Vec<(bool, f64)> = (0..problem.records.len()).map(flight).collect();
     let of = |set: bool| flights.iter().filter(move |(later, _)| *later == set).map(|(_, off)| *off);
