@@ -111,7 +111,7 @@ pub fn problem(logs: Vec<Quality>, vehicle: &Vehicle) -> Problem {
 /// Diagnoses flights of a vehicle that is thought to be `vehicle`.
 pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnosed {
     watch("predicting", 0.02);
-    let (problem, mut selection, left_out) = accident::select_steady(logs, vehicle, watch);
+    let (problem, mut selection, left_out) = accident::select_steady(logs, |logs| problem(logs, vehicle), watch);
     let usable_s = problem.records.iter().map(|r| r.usable_s).sum();
     whole::parts(&problem, &mut selection);
     disambiguate::clocks(&problem, &mut selection);

@@ -11,7 +11,6 @@ use crate::insight::criteria::usable::{
     ACCIDENT_DEVIATIONS, ACCIDENT_MARGIN_S, ACCIDENT_POWER, ACCIDENT_SHARE, SHORTEST_FLIGHT_S,
 };
 use crate::insight::quality::Quality;
-use crate::model::vehicle::Vehicle;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,16 +30,20 @@ pub struct LeftOut {
     flight: usize,
 }
 
-/// The flights `logs` against `vehicle`, what explains them, and what was left out.
-pub fn select_steady(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> (Problem, Selection, Vec<LeftOut>) {
-    let problem = super::problem(logs.clone(), vehicle);
+/// The flights `logs` as a problem, what explains them, and what was left out.
+pub fn select_steady(
+    logs: Vec<Quality>,
+    problem_of: impl Fn(Vec<Quality>) -> Problem,
+    watch: Watch,
+) -> (Problem, Selection, Vec<LeftOut>) {
+    let problem = problem_of(logs.clone());
     let selection = select(&problem, watch);
     let found = find(&problem, &selection);
     if found.is_empty() {
         return (problem, selection, found);
     }
     watch("again, without what was left out", 0.2);
-    let problem = super::problem(without(logs, &found), vehicle);
+    let problem = problem_of(without(logs, &found));
     let selection = select(&problem, watch);
     (problem, selection, found)
 }

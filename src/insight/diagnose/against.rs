@@ -35,12 +35,14 @@ use suspect::Suspect;
 pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Changes {
     let later: Vec<bool> = before.iter().map(|_| false).chain(after.iter().map(|_| true)).collect();
     let all = before.into_iter().chain(after).collect();
-    let (mut problem, selection, left_out) =
-        accident::select_steady(all, vehicle, &mut |step, share| watch(step, 0.5 * share));
+    let contrasted = |logs| {
+        let mut problem = super::problem(logs, vehicle);
+        problem.contrast = Some(Contrast::new(&mut problem.model, later.clone()));
+        problem
+    };
+    let (problem, selection, left_out) =
+        accident::select_steady(all, contrasted, &mut |step, share| watch(step, 0.5 * share));
     let suspects = suspect::known(&problem);
-    let contrast = Contrast::new(&mut problem.model, later);
-    let suspects: Vec<Suspect> = suspects.into_iter().map(|s| s.in_contrast(&contrast)).collect();
-    problem.contrast = Some(contrast);
     watch("comparing", 0.5);
     let search = Search::new(&problem, &suspects, &selection.whitener, &selection.point).run();
     let would_show = would_show(&problem, &search.tested, &suspects);

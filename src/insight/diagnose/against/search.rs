@@ -12,7 +12,7 @@ use crate::insight::diagnose::numbers::span;
 use crate::insight::diagnose::problem::Problem;
 use crate::insight::diagnose::size::is_bounded;
 use crate::insight::diagnose::whiten::Whitener;
-use crate::model::effects::{self, Card, Role, are_rivals};
+use crate::model::effects::{Card, are_rivals};
 use rayon::prelude::*;
 
 /// A difference that was found.
@@ -47,15 +47,9 @@ pub struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// From `point`, which both sets have in common. Constant errors and clocks are each set's own.
+    /// From `point`, which both sets have in common.
     pub fn new(problem: &'a Problem, suspects: &'a [Suspect], whitener: &'a Whitener, point: &FitPoint) -> Self {
-        let contrast = problem.contrast.as_ref();
-        let own = [Role::ConstantError, Role::OdometryLate].into_iter().flat_map(effects::acting).flat_map(span);
-        let own = own.filter(|k| point.free.contains(k)).filter_map(|k| contrast.and_then(|c| c.of(k)));
-        let free: Vec<usize> = point.free.iter().copied().chain(own).collect();
-        let mut x = point.x.clone();
-        x.resize(problem.model.numbers.len(), 0.0);
-        let point = fit::fit(problem, whitener, &x, &free);
+        let point = fit::fit(problem, whitener, &point.x, &point.free);
         let cards: Vec<&'static Card> = suspects.iter().filter_map(|s| s.card).collect();
         let held = |card: &Card| span(card).any(|k| point.free.contains(&k));
         let cards: Vec<_> = cards.into_iter().filter(|card| !held(card)).collect();
@@ -137,7 +131,7 @@ impl<'a> Search<'a> {
         let (problem, point) = (self.problem, &self.point);
         let suspect = &self.suspects[tested.suspect];
         let unknown = |k: &usize| !point.free.contains(k);
-        let common: Vec<usize> = suspect.card.iter().flat_map(|card| span(card)).filter(unknown).collect();
+        let common: Vec<usize> = suspect.common().filter(unknown).collect();
         let own: Vec<usize> = common.iter().chain(&suspect.own).copied().collect();
         let with = fit::refit(problem, self.whitener, point, &own, &self.start(suspect, tested));
         let alike = if common.is_empty() {
@@ -164,6 +158,7 @@ impl<'a> Search<'a> {
             let difference = self.problem.contrast.as_ref().and_then(|c| c.of(*k));
             let number = &self.problem.model.numbers[*k];
             match difference.filter(|d| suspect.own.contains(d)) {
+                Some(d) if suspect.is_absorbed() => x[d] = start * size * tested.expected.signum(),
                 Some(d) if tested.expected > 0.0 => x[d] = (start * size).clamp(number.low, number.high),
                 Some(d) => {
                     x[*k] = (start * size).clamp(number.low, number.high);

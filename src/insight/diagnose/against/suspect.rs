@@ -8,7 +8,7 @@ use crate::insight::diagnose::candidates::base_numbers;
 use crate::insight::diagnose::contrast::Contrast;
 use crate::insight::diagnose::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
 use crate::insight::diagnose::problem::Problem;
-use crate::model::effects::{self, Card, Role};
+use crate::model::effects::{self, Card, CompactNumber, Role};
 use std::ops::Range;
 
 /// Something that may differ.
@@ -88,14 +88,15 @@ fn can_differ(card: &Card, one_clock: bool) -> bool {
     }
 }
 
-/// All suspects that the flights of `problem` tell anything about, before it has a contrast.
+/// All suspects that the flights of `problem` tell anything about; none where it has no contrast.
 pub fn known(problem: &Problem) -> Vec<Suspect> {
+    let Some(contrast) = &problem.contrast else { return Vec::new() };
     let told = base_numbers(problem);
     let one_clock = problem.records.iter().all(|r| r.one_clock);
     let numbers = compact().into_iter().filter(|(.., numbers, _)| numbers.clone().any(|k| told.contains(&k)));
     let numbers = numbers.map(|(id, name, sentence, numbers, matters)| {
-        let matters = matters.get();
-        Suspect { id, name, sentence, card: None, numbers, matters, own: Vec::new() }
+        let own = differences(None, &numbers, contrast);
+        Suspect { id, name, sentence, card: None, numbers, matters: matters.get(), own }
     });
     let cards = effects::cards().filter(|card| can_differ(card, one_clock)).map(|card| Suspect {
         id: card.id,
@@ -104,17 +105,29 @@ pub fn known(problem: &Problem) -> Vec<Suspect> {
         card: Some(card),
         numbers: span(card),
         matters: 0.0,
-        own: Vec::new(),
+        own: differences(Some(card), &span(card), contrast),
     });
     numbers.chain(cards).collect()
 }
 
+/// With the differences of its sizes. The shape of an effect is the vehicle's, before and after.
+fn differences(card: Option<&Card>, numbers: &Range<usize>, contrast: &Contrast) -> Vec<usize> {
+    let shape = card.and_then(|card| card.shape).map(|i| numbers.start + i);
+    let mut own: Vec<usize> = numbers.clone().filter(|k| Some(*k) != shape).filter_map(|k| contrast.of(k)).collect();
+    own.dedup();
+    own
+}
+
 impl Suspect {
-    /// With the differences of its sizes. The shape of an effect is the vehicle's, before and after.
-    pub fn in_contrast(mut self, contrast: &Contrast) -> Self {
-        let shape = self.card.and_then(|card| card.shape).map(|i| self.numbers.start + i);
-        self.own = self.numbers.clone().filter(|k| Some(*k) != shape).filter_map(|k| contrast.of(k)).collect();
-        self.own.dedup();
-        self
+    /// Whether the compact model takes it up where both sets have it: then only the difference can be told.
+    pub fn is_absorbed(&self) -> bool {
+        let both_ways = |card: &Card| card.parameters[0].low < 0.0;
+        self.card.is_some_and(|card| card.absorbed_by.contains(&CompactNumber::Thrust) && both_ways(card))
+    }
+
+    /// Numbers of the vehicle that have to be known beside the difference.
+    pub fn common(&self) -> impl Iterator<Item = usize> {
+        let known = self.card.is_some() && !self.is_absorbed();
+        self.numbers.clone().filter(move |_| known)
     }
 }
