@@ -34,7 +34,7 @@ impl<'a> OutputFiles<'a> {
         show(diagnosed, self.page, self.figures)?;
         if let Some(json) = self.json {
             let (changes, diagnosis) = (diagnosed.changes.as_ref(), &diagnosed.diagnosis);
-            let document = encode::json("the diagnosis", &Document { changes, diagnosis })?;
+            let document = encode::json("the diagnosis", &DiagnosisFile { changes, diagnosis })?;
             tell(&format!("figures in {}", json.write(document.as_bytes())?.display()));
         }
         if let Some(file) = self.vehicle {
@@ -48,7 +48,7 @@ impl<'a> OutputFiles<'a> {
 
 /// The JSON file: what changed comes first.
 #[derive(Serialize)]
-struct Document<'a> {
+struct DiagnosisFile<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     changes: Option<&'a Changes>,
     #[serde(flatten)]

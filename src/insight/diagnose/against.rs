@@ -28,7 +28,7 @@ use crate::model::effects::{self, Role};
 use crate::model::vehicle::Vehicle;
 pub use change::{Both, Change, Changes, WouldShow};
 use columns::Tested;
-use search::{Found, Search};
+use search::{DifferenceSearch, FoundDifference};
 use suspect::Suspect;
 
 /// What changed from the flights `before` to the flights `after`, of a vehicle that is thought to be `vehicle`.
@@ -44,7 +44,7 @@ pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, wat
         accident::select_steady(all, contrasted, &mut |step, share| watch(step, 0.5 * share));
     let suspects = suspect::known(&problem);
     watch("comparing", 0.5);
-    let search = Search::new(&problem, &suspects, &selection.whitener, &selection.point).run();
+    let search = DifferenceSearch::new(&problem, &suspects, &selection.whitener, &selection.point).run();
     let would_show = would_show(&problem, &search.tested, &suspects);
     let (found, searched) = (reported(&search, &suspects), search.found.len());
     let point = search.point.clone();
@@ -63,15 +63,15 @@ impl Changes {
 }
 
 /// Differences that were found, and those that every fit allows for.
-fn reported(search: &Search, suspects: &[Suspect]) -> Vec<Found> {
+fn reported(search: &DifferenceSearch, suspects: &[Suspect]) -> Vec<FoundDifference> {
     let known = |suspect: usize| search.found.iter().any(|f| f.suspect == suspect);
     let own = |s: &Suspect| !s.own.is_empty() && s.own.iter().all(|k| search.point.free.contains(k));
     let allowed = (0..suspects.len()).filter(|&s| !known(s) && own(&suspects[s]));
-    search.found.iter().cloned().chain(allowed.map(|suspect| Found { suspect, ties: Vec::new() })).collect()
+    search.found.iter().cloned().chain(allowed.map(|suspect| FoundDifference { suspect, ties: Vec::new() })).collect()
 }
 
 /// The answer, of what was `found`; after the first so many come those that every fit allows for.
-fn changes(fitted: &FittedSelection, suspects: &[Suspect], found: &[Found], searched: usize) -> Changes {
+fn changes(fitted: &FittedSelection, suspects: &[Suspect], found: &[FoundDifference], searched: usize) -> Changes {
     let places: Vec<Vec<usize>> = found.iter().map(|f| judge::places(fitted, &suspects[f.suspect])).collect();
     let pays = judge::pays(fitted, &places);
     let judged = found.iter().zip(pays).map(|(found, pays)| judge::judge(fitted, suspects, found, pays));

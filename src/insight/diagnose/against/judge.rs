@@ -3,7 +3,7 @@
 
 use super::change::Change;
 use super::columns::later;
-use super::search::Found;
+use super::search::FoundDifference;
 use super::sizes;
 use super::suspect::Suspect;
 use crate::base::stats::chi_squared_chance;
@@ -27,7 +27,7 @@ use crate::model::effects::{EffectKind, Role};
 const PARTS: usize = 3;
 
 /// Judges a difference, of so many suspects.
-pub fn judge(fitted: &FittedSelection, suspects: &[Suspect], found: &Found, pays: f64) -> Change {
+pub fn judge(fitted: &FittedSelection, suspects: &[Suspect], found: &FoundDifference, pays: f64) -> Change {
     let suspect = &suspects[found.suspect];
     let own = places(fitted, suspect);
     let sizes = sizes::of(fitted, suspect);

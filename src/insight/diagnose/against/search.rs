@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 /// A difference that was found.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct FoundDifference {
     /// Place among the suspects.
     pub suspect: usize,
     /// Places of what these flights do not tell from it.
@@ -33,12 +33,12 @@ struct Tried {
 }
 
 /// A search for differences.
-pub struct Search<'a> {
+pub struct DifferenceSearch<'a> {
     problem: &'a Problem,
     pub suspects: &'a [Suspect],
     pub whitener: &'a Whitener,
     pub point: FitPoint,
-    pub found: Vec<Found>,
+    pub found: Vec<FoundDifference>,
     /// What was tested last.
     pub tested: Vec<Tested>,
     /// What nearly took the place of the last one found, with its gain.
@@ -46,7 +46,7 @@ pub struct Search<'a> {
     candidates: Vec<Candidate>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> DifferenceSearch<'a> {
     /// From `point`, which both sets have in common.
     pub fn new(problem: &'a Problem, suspects: &'a [Suspect], whitener: &'a Whitener, point: &FitPoint) -> Self {
         let point = fit::fit(problem, whitener, &point.x, &point.free);
@@ -94,7 +94,7 @@ impl<'a> Search<'a> {
         }
         let near = tried.iter().skip(1).filter(|t| tied(best, t));
         self.pending = near.map(|t| (t.suspect, t.gain)).collect();
-        self.found.push(Found { suspect: best.suspect, ties: Vec::new() });
+        self.found.push(FoundDifference { suspect: best.suspect, ties: Vec::new() });
         let point = fit::fit(self.problem, self.whitener, &best.point.x, &best.point.free);
         self.point = point;
         true

@@ -9,7 +9,7 @@ use crate::model::vehicle::Vehicle;
 use std::collections::BTreeMap;
 
 /// A cause before and after.
-pub struct Sizes {
+pub struct SizesOfSets {
     pub before: BTreeMap<String, Value>,
     pub after: BTreeMap<String, Value>,
     pub difference: BTreeMap<String, Value>,
@@ -19,7 +19,7 @@ pub struct Sizes {
 const COMMAND: f64 = 0.2;
 
 /// The sizes of a suspect.
-pub fn of(fitted: &FittedSelection, suspect: &Suspect) -> Sizes {
+pub fn of(fitted: &FittedSelection, suspect: &Suspect) -> SizesOfSets {
     let flights = [0, fitted.problem.records.len() - 1];
     let at = |x: &[f64]| flights.map(|f| shown(fitted, suspect, &fitted.problem.numbers(f, x)));
     let point = fitted.point();
@@ -46,7 +46,7 @@ pub fn of(fitted: &FittedSelection, suspect: &Suspect) -> Sizes {
     };
     let set = |s: usize| (0..here[s].len()).map(|i| value(i, here[s][i].1, sd(&|g| g[s][i]))).collect();
     let apart = |i: usize| value(i, here[1][i].1 - here[0][i].1, sd(&|g| g[1][i] - g[0][i]));
-    Sizes { before: set(0), after: set(1), difference: (0..here[0].len()).map(apart).collect() }
+    SizesOfSets { before: set(0), after: set(1), difference: (0..here[0].len()).map(apart).collect() }
 }
 
 /// The largest share by which a number of the compact model differs.

@@ -27,10 +27,10 @@ pub struct Suspect {
 }
 
 /// Id, name, sentence, numbers and share that matters.
-type Row = (&'static str, &'static str, &'static str, Range<usize>, &'static Criterion);
+type Workshop = (&'static str, &'static str, &'static str, Range<usize>, &'static Criterion);
 
 /// Numbers of the compact model that a workshop changes.
-fn compact() -> [Row; 7] {
+fn compact() -> [Workshop; 7] {
     let tau = TAU.start;
     [
         (
