@@ -82,6 +82,8 @@ criteria! {
     ACCIDENT_DEVIATIONS = 8.0, Assumed("seconds of flights that vary a lot have heavier tails than the normal law");
     /// Share of the seconds up to which they are accidents; more is what the vehicle does.
     ACCIDENT_SHARE = 0.03, Assumed("an effect that is flown rarely shows in more of them");
+    /// Seconds up to which they are accidents in a short flight.
+    ACCIDENT_SECONDS = 3.0, Assumed("a hit and what follows it, across the full second");
     /// Kept away from such a second, s.
     ACCIDENT_MARGIN_S = 0.25, Assumed("the stretch over which turns and pushes are compared");
 }

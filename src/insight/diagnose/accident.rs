@@ -8,7 +8,7 @@ use crate::base::stats::{median, robust_sd};
 use crate::flight::spans::{self, Span};
 use crate::insight::Watch;
 use crate::insight::criteria::usable::{
-    ACCIDENT_DEVIATIONS, ACCIDENT_MARGIN_S, ACCIDENT_POWER, ACCIDENT_SHARE, SHORTEST_FLIGHT_S,
+    ACCIDENT_DEVIATIONS, ACCIDENT_MARGIN_S, ACCIDENT_POWER, ACCIDENT_SECONDS, ACCIDENT_SHARE, SHORTEST_FLIGHT_S,
 };
 use crate::insight::quality::Quality;
 use serde::Serialize;
@@ -69,7 +69,7 @@ fn find(problem: &Problem, selection: &Selection) -> Vec<LeftOut> {
             }
         }
     }
-    if seconds.len() as f64 > (ACCIDENT_SHARE.get() * flown.len() as f64).max(1.0) {
+    if seconds.len() as f64 > (ACCIDENT_SHARE.get() * flown.len() as f64).max(ACCIDENT_SECONDS.get()) {
         return Vec::new();
     }
     let mut out: Vec<LeftOut> = Vec::new();
