@@ -174,7 +174,7 @@ fn cards_say_what_their_equations_read_and_write() {
         let says = |all: &[Quantity]| all.iter().copied().collect::<BTreeSet<_>>();
         assert_eq!(reads, says(card.reads), "{} reads", card.id);
         // What a corrected reading integrates to is no stage, and what acts on the log is in none.
-        let in_stages = matches!(card.role, Role::InStages | Role::ConstantError | Role::UniformWind);
+        let in_stages = matches!(card.role, Role::InStages | Role::ConstantError | Role::UniformWind | Role::OneMotor);
         let mut said = if in_stages { says(card.writes) } else { BTreeSet::new() };
         let reading = [Quantity::Gyro, Quantity::Accelerometer].iter().any(|q| writes.contains(q));
         assert_eq!(said.remove(&Quantity::Integrated), reading, "{} corrects a reading", card.id);
