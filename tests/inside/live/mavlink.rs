@@ -164,8 +164,8 @@ fn a_frame_that_is_not_known_is_no_state() {
         matches!(mavlink.hear(&frame(1, VEHICLE, ODOMETRY, &payload), 0.0)[..], [Heard::State(_)])
     };
     let known = [[1, 12], [1, 1], [1, 8], [20, 12], [20, 20], [4, 12], [21, 21]];
-    assert!(known.map(|frames| hear(frames)).iter().all(|state| *state));
-    assert!([[0, 12], [1, 0], [18, 12], [1, 13]].map(|frames| hear(frames)).iter().all(|state| !*state));
+    assert!(known.map(&mut hear).iter().all(|state| *state));
+    assert!([[0, 12], [1, 0], [18, 12], [1, 13]].map(hear).iter().all(|state| !*state));
 }
 
 #[test]
