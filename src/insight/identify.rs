@@ -13,9 +13,11 @@ pub mod force;
 pub mod inputs;
 pub mod judge;
 pub mod mixer;
+pub mod rate_loop;
 pub mod rates;
 pub mod refuse;
 pub mod result;
+pub mod room;
 pub mod solve;
 pub mod thrust;
 
@@ -75,11 +77,13 @@ pub fn identify(logs: Vec<Quality>, options: &IdentifyOptions, watch: Watch) -> 
     let start = out.vehicle.clone();
     let full_rate = out.full_rate_rad_s;
     let mut drag = true;
+    watch("the form of the response", 0.0);
+    let form = rate_loop::form(&data, options.rate_cutoff_hz);
     loop {
         watch("the first part of the flight", if drag { 0.0 } else { 0.5 });
-        let train = Fits::new(&data, DataPart::Train, &start, options, drag);
+        let train = Fits::new(&data, DataPart::Train, &start, options, drag, form);
         watch("all of the flight", if drag { 0.25 } else { 0.7 });
-        let all = Fits::new(&data, DataPart::All, &start, options, drag);
+        let all = Fits::new(&data, DataPart::All, &start, options, drag, form);
         watch("validation", if drag { 0.45 } else { 0.9 });
         out.validated = train.vehicle(&data, DataPart::Train, &start, &train.everything(), full_rate);
         let predicted = [DataPart::Train, DataPart::Validation].map(|part| {

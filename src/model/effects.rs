@@ -12,9 +12,13 @@ mod stages;
 mod values;
 
 use crate::base::lane::Real;
-pub use card::{Card, CompactNumber, EffectKind, EffectParameter, Evidence, RateResponse, ResidualChannel, Role, Twin};
+pub use card::{
+    Card, CompactNumber, ControllerPart, EffectKind, EffectParameter, Evidence, RateResponse, ResidualChannel, Role,
+    Twin,
+};
 pub use dependence::Quantities;
 pub use quantity::Quantity;
+pub use rate_slew_limit::YAW_SLEW_SHARE;
 pub use stages::{
     Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, CommandSetpoint, RelativeWind, Sensed,
     ThrustInput,
@@ -110,6 +114,7 @@ effects! {
         thrust_delay::ThrustDelay
         link_delay::LinkDelay
         rate_second_order::RateSecondOrder
+        yaw_second_order::YawSecondOrder
         rate_slew_limit::RateSlewLimit
         rate_expo::RateExpo
         response_voltage::ResponseVoltage
@@ -121,6 +126,7 @@ effects! {
         voltage_sag::VoltageSag
         voltage_relaxation::VoltageRelaxation
         ocv_curve::OcvCurve
+        mixer_room::MixerRoom
         voltage_compensation::VoltageCompensation
         throttle_offset::ThrottleOffset
         mixer_thrust_loss::MixerThrustLoss
@@ -187,6 +193,11 @@ pub fn cards() -> impl Iterator<Item = &'static Card> {
 /// The effects that act on a log in this way.
 pub fn acting(role: Role) -> impl Iterator<Item = &'static Card> {
     cards().filter(move |card| card.role == role)
+}
+
+/// The effect that is this part of a flight controller's answer.
+pub fn of_controller(part: ControllerPart) -> Option<&'static Card> {
+    cards().find(|card| card.controller == Some(part))
 }
 
 /// Whether two effects look alike: one of them says so.

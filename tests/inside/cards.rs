@@ -52,11 +52,13 @@ fn passages() -> Vec<Passage> {
         v[..4].copy_from_slice(&s.command);
     };
     let actuator: fn(&[f64], &mut [f64]) = |k, v| {
-        let mut s = Actuator { tau: four(v), tau_down: v[4], inertia: v[5], slew: three(&v[6..]), missing_v: v[9] };
+        let (inertia, slew) = (three(&v[5..]), three(&v[8..]));
+        let mut s = Actuator { tau: four(v), tau_down: v[4], inertia, slew, missing_v: v[11] };
         effects::actuator(&values(k), &mut s);
         v[..4].copy_from_slice(&s.tau);
-        (v[4], v[5]) = (s.tau_down, s.inertia);
-        v[6..9].copy_from_slice(&s.slew);
+        v[4] = s.tau_down;
+        v[5..8].copy_from_slice(&s.inertia);
+        v[8..11].copy_from_slice(&s.slew);
     };
     let body_rates: fn(&[f64], &mut [f64]) = |k, v| {
         let mut s = Rates { rates: three(v), throttle: v[3] };
@@ -69,7 +71,7 @@ fn passages() -> Vec<Passage> {
         (v[3], v[4]) = (s.polarisation, s.drop);
     };
     let thrust_input: fn(&[f64], &mut [f64]) = |k, v| {
-        let mut s = ThrustInput { command: v[0], voltage: v[1], middle_v: v[2] };
+        let mut s = ThrustInput { command: v[0], voltage: v[1], middle_v: v[2], behind: v[3] };
         effects::thrust_input(&values(k), &mut s);
         (v[0], v[1]) = (s.command, s.voltage);
     };
@@ -106,10 +108,18 @@ fn passages() -> Vec<Passage> {
             vec![own(RateCommand, 3), own(ThrustCommand, 1), input(ThrustCommand, 1), input(RateCommand, 3), fixed(7)],
             setpoint,
         ),
-        (vec![own(RateCommand, 3), own(ThrustCommand, 2), own(RateCommand, 4), fixed(1)], actuator),
+        (vec![own(RateCommand, 3), own(ThrustCommand, 2), own(RateCommand, 6), fixed(1)], actuator),
         (vec![own(BodyRates, 3), input(ThrustCommand, 1)], body_rates),
         (vec![input(ThrustCommand, 1), fixed(1), input(Voltage, 1), own(Voltage, 2)], battery),
-        (vec![changes(ThrustCommand, SpecificForce, 1), changes(Voltage, SpecificForce, 1), fixed(1)], thrust_input),
+        (
+            vec![
+                changes(ThrustCommand, SpecificForce, 1),
+                changes(Voltage, SpecificForce, 1),
+                fixed(1),
+                input(RateError, 1),
+            ],
+            thrust_input,
+        ),
         (vec![fixed(9), changes(Velocity, SpecificForce, 3)], wind),
         (
             vec![

@@ -350,6 +350,8 @@ fn forces_follow_the_equations() {
     let base = felt(&seed_class(), s);
     let lift = specific_thrust(&compact.thrust, 0.2, 23.0);
     let (throttle, error) = (0.6, 0.5 + 0.2 + 0.1);
+    let full = seed_class().max_rates_rad_s();
+    let behind = 0.5 * full[0] + 0.2 * full[1] + 0.1 * full[2];
     let [wx, wy, _] = s.body_rates(&compact);
     let (height, speed) = (0.25, 10.0);
     let sinking = -vz / (1.6 * lift.sqrt());
@@ -357,6 +359,7 @@ fn forces_follow_the_equations() {
     let fade: f64 = 60.0 / 300.0;
     for (id, k, more) in [
         ("mixer_thrust_loss", 0.1, [0.0, 0.0, -0.1 * error * lift]),
+        ("mixer_room", 0.058, [0.0, 0.0, specific_thrust(&compact.thrust, 1.0 - 0.116 * behind, 23.0) - lift]),
         ("thrust_fade", 0.08, [0.0, 0.0, -0.08 * fade * lift]),
         ("ground_effect", 10.0, [0.0, 0.0, 10.0 * (0.0635_f64 / (4.0 * height)).powi(2) * lift]),
         ("propwash", 0.3, [0.0, 0.0, -0.3 * wake * lift]),

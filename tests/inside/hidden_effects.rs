@@ -32,7 +32,8 @@ fn finds(seed: u64, effects: &[(&str, f64)], within: f64) {
     let Diagnosed { diagnosis, .. } = diagnosed(&vehicle, &hidden, seed);
     let found = named(&diagnosis);
     let names: Vec<&str> = found.iter().map(|f| f.effect).collect();
-    assert_eq!(names.len(), effects.len(), "{effects:?} were hidden, {names:?} were named");
+    let all: Vec<_> = diagnosis.findings.iter().map(|f| (f.effect, &f.why, &f.parameters)).collect();
+    assert_eq!(names.len(), effects.len(), "{effects:?} were hidden, {names:?} were named, found were {all:#?}");
     for truth in &hidden {
         let finding = found.iter().find(|f| f.effect == truth.id);
         let finding = finding.unwrap_or_else(|| panic!("{} was hidden, {names:?} were named", truth.id));
@@ -62,6 +63,16 @@ fn delays_are_found() {
 #[test]
 fn yaw_has_a_delay_of_its_own() {
     finds(49, &[("rate_delay", 0.03), ("yaw_delay", -0.015)], 0.05);
+}
+
+#[test]
+fn the_room_that_a_mixer_makes_is_found() {
+    finds(50, &[("mixer_room", 0.06)], 0.05);
+}
+
+#[test]
+fn yaw_that_swings_is_found() {
+    finds(51, &[("yaw_second_order", 25.0)], 0.05);
 }
 
 #[test]

@@ -428,7 +428,7 @@ fn the_largest_sizes_fly_too() {
     let mut random = rng();
     for (k, entry) in catalogue::CATALOGUE.iter().enumerate() {
         let vehicle = Vehicle::draw(100 + k as u64);
-        let extreme = if matches!(entry.id, "rate_second_order" | "rate_slew_limit") { 0 } else { 1 };
+        let extreme = if entry.grows_downwards() { 0 } else { 1 };
         let hidden = [Hidden::sized(entry.id, entry.range(&vehicle)[extreme], &vehicle, &mut random)];
         for style in [Style::Excited, Style::Race] {
             let log = fly(&vehicle, &hidden, &Setting { seed: k as u64, ..setting(120.0, 1.0, style) });

@@ -2,11 +2,11 @@
 """From a flight to a faster policy, through a real firmware: the whole loop, in laps.
 
     python tests/python/betaflight_loop.py target/release/racer betaflight_SITL OUT [--seeds 1,2,3]
-        [--steps 40000000] [--laps 10] [--vehicle seed_class] [--seconds 120] [--excitations 2]
+        [--steps 80000000] [--laps 10] [--vehicle seed_class] [--seconds 120] [--excitations 2]
 
 The firmware flies the excitation, racer identifies the vehicle from its log and extends it by what it
-diagnoses; then policies are trained in the vehicle as its file says, as identified and as extended, and
-each flies the same laps through the same firmware. OUT is a folder: what is there already is not made
+diagnoses; then policies are trained in the vehicle as its file says, as identified and, where the
+diagnosis names anything, as extended, and each flies the same laps through the same firmware. OUT is a folder: what is there already is not made
 again, so that the loop can go on where it ended. OUT/loop.csv has a line for each policy.
 """
 
@@ -15,6 +15,7 @@ import csv
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 HEADER = ["vehicle", "seed", "steps", "forecast_s", "flown_s", "share", "laps", "complete", "ended", "flown_laps_s"]
@@ -52,9 +53,15 @@ def vehicles(args, firmware):
         found["identified"] = "identified.toml"
         if not (args.out / "extended.toml").exists():
             run(args.out, args.racer, "diagnose", *logs, "--vehicle", "identified.toml", "--extend", "extended.toml")
-        if (args.out / "extended.toml").exists():
+        extended = effects(args.out / "extended.toml")
+        if extended and extended != effects(args.out / "identified.toml"):
             found["extended"] = "extended.toml"
     return found
+
+
+def effects(file):
+    """Which effects a vehicle has; none where there is no such file."""
+    return set(tomllib.loads(file.read_text()).get("effects", {}).get("sizes", {})) if file.exists() else None
 
 
 def main():
@@ -63,7 +70,7 @@ def main():
     parser.add_argument("firmware", type=lambda path: Path(path).resolve())
     parser.add_argument("out", type=Path)
     parser.add_argument("--seeds", default="1,2,3")
-    parser.add_argument("--steps", type=int, default=40_000_000)
+    parser.add_argument("--steps", type=int, default=80_000_000)
     parser.add_argument("--laps", type=int, default=10)
     parser.add_argument("--vehicle", default="seed_class")
     parser.add_argument("--seconds", type=int, default=120)

@@ -10,7 +10,7 @@ use crate::base::lane::build;
 use crate::flight::instruments::Actual;
 use crate::model::attitude::{Quaternion, body_axes, dot};
 use crate::model::dynamics::extended::{
-    Drive, Extended, ForceInputs, RigidBody, actuator_response, elapsed, force, moved, terminal,
+    Drive, Extended, ForceInputs, RigidBody, TurnError, actuator_response, elapsed, force, moved, terminal,
 };
 use crate::model::dynamics::{Factors, battery};
 use crate::model::thrust::specific_thrust;
@@ -77,7 +77,7 @@ impl Plant {
         let rates = build!(|i| turning[i].mul_add(0.5 * h, self.rates[i]));
         let (height, elapsed) = (self.body.position[2], elapsed(p, open));
         // What a setpoint asks for is not known to the motors.
-        let drive = Drive { command, voltage, rates, height, rate_error: 0.0, elapsed };
+        let drive = Drive { command, voltage, rates, height, turn_error: TurnError::none(), elapsed };
         self.body = moved(&self.body, p, &drive, h);
         self.rates = build!(|i| turning[i].mul_add(h, self.rates[i]));
         if self.body.position[2] < 0.0 && !lifts {
@@ -127,7 +127,7 @@ impl Plant {
                 velocity: axes.map(|axis| dot(axis, velocity)),
                 rates: self.rates,
                 height: position[2],
-                rate_error: 0.0,
+                turn_error: TurnError::none(),
                 elapsed: elapsed(p, self.open_v),
             };
             force(p, &inputs)

@@ -2,14 +2,14 @@
 
 use super::model::Model;
 use super::record::FlightRecord;
-use crate::model::dynamics::extended::{self, Extended};
+use crate::model::dynamics::extended::{self, Extended, TurnError};
 use crate::model::effects::Role;
 
-/// The filtered commands at every sample; by how much those of the rates lag, summed; what they go to, and how fast
+/// The filtered commands at every sample; how far those of the rates lag; what they go to, and how fast
 /// those of the rates change.
 pub struct ActuatorResponse {
     pub command: Vec<[f64; 4]>,
-    pub lag: Vec<f64>,
+    pub lag: Vec<TurnError<f64>>,
     pub setpoint: Vec<([f64; 4], [f64; 3])>,
 }
 
@@ -19,7 +19,7 @@ impl ActuatorResponse {
     }
 
     #[inline(always)]
-    fn push(&mut self, command: [f64; 4], lag: f64, setpoint: ([f64; 4], [f64; 3])) {
+    fn push(&mut self, command: [f64; 4], lag: TurnError<f64>, setpoint: ([f64; 4], [f64; 3])) {
         self.command.push(command);
         self.lag.push(lag);
         self.setpoint.push(setpoint);
@@ -87,7 +87,11 @@ pub fn actuator_response(
     let n = record.time.len();
     let none = [f64::NAN; 4];
     let Some((first, begin)) = record.sent.first().copied() else {
-        return ActuatorResponse { command: vec![none; n], lag: vec![0.0; n], setpoint: vec![(none, [0.0; 3]); n] };
+        return ActuatorResponse {
+            command: vec![none; n],
+            lag: vec![TurnError::none(); n],
+            setpoint: vec![(none, [0.0; 3]); n],
+        };
     };
     let late = extended::command_delays(p);
     let imu = model.acting(x, Role::ImuLate);
@@ -96,11 +100,11 @@ pub fn actuator_response(
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let mut arrivals = Arrivals { sent: &record.sent, late, lost, at: [0; 3], command: begin };
     let mut out = ActuatorResponse::with_capacity(n);
-    let (mut command, mut slope, mut now) = (begin, [0.0; 3], first);
+    let (mut command, mut slope, mut now, mut newest) = (begin, [0.0; 3], first, 0);
     for i in 0..n {
         let t = record.time[i] * stretch;
         if t < first {
-            out.push(none, f64::NAN, (none, [0.0; 3]));
+            out.push(none, TurnError { share: f64::NAN, behind: f64::NAN }, (none, [0.0; 3]));
             continue;
         }
         let voltage = supplied(p, record, i);
@@ -118,7 +122,10 @@ pub fn actuator_response(
             arrivals.take(g);
         }
         let sent = arrivals.command;
-        out.push(command, (0..3).map(|k| (sent[k] - command[k]).abs()).sum(), (sent, slope));
+        while record.sent.get(newest + 1).is_some_and(|next| next.0 <= t) {
+            newest += 1;
+        }
+        out.push(command, TurnError::of(p, record.sent[newest].1, sent, command), (sent, slope));
     }
     out
 }

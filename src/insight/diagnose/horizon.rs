@@ -127,7 +127,7 @@ fn run(p: &Extended<f64>, record: &FlightRecord, state: &Predicted, [start, end]
             voltage: state.voltage[i],
             rates: std::array::from_fn(|k| 0.5 * (state.rates[i][k] + state.rates[i + 1][k])),
             height: record.height[start] + body.position[2] - record.position[2][start],
-            rate_error: state.lag(i),
+            turn_error: state.lag(i),
             elapsed: record.time[i] - since,
         };
         body = extended::moved(&body, p, &drive, record.time[i + 1] - record.time[i]);

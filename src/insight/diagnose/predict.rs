@@ -13,7 +13,7 @@ use crate::flight::lowpass::LowPass;
 use crate::flight::series::period;
 use crate::model::attitude::dot;
 use crate::model::dynamics::battery::discharged;
-use crate::model::dynamics::extended::{self, Extended, ForceInputs};
+use crate::model::dynamics::extended::{self, Extended, ForceInputs, TurnError};
 use crate::model::effects::{self, Card, Quantities, Quantity, Role, Sensed};
 use std::sync::Arc;
 
@@ -23,9 +23,9 @@ const VOLTAGE_HZ: f64 = 0.5;
 /// One flight, predicted; every stage is kept and shared, so that a number late in the chain is cheap to change.
 #[derive(Clone, Debug, Default)]
 pub struct Predicted {
-    /// Filtered commands, and the share that each rate lags, summed.
+    /// Filtered commands, and how far those of the rates lag.
     command: Arc<Vec<[f64; 4]>>,
-    lag: Arc<Vec<f64>>,
+    lag: Arc<Vec<TurnError<f64>>>,
     /// What the filtered commands go to, and how fast those of the rates change.
     setpoint: Arc<Vec<([f64; 4], [f64; 3])>>,
     /// Body rates, and those that the gyro's late samples show.
@@ -46,8 +46,8 @@ impl Predicted {
         self.command[i][3]
     }
 
-    /// Sum over the axes of |command - response| at a sample.
-    pub fn lag(&self, i: usize) -> f64 {
+    /// How far the rates lag at a sample.
+    pub fn lag(&self, i: usize) -> TurnError<f64> {
         self.lag[i]
     }
 
@@ -154,7 +154,7 @@ impl Predicted {
                 velocity,
                 rates: self.rates[i],
                 height: record.height[i],
-                rate_error: self.lag[i],
+                turn_error: self.lag[i],
                 elapsed: record.time[i] - since,
             };
             out.push(extended::force(p, &inputs));

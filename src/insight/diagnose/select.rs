@@ -8,7 +8,7 @@ use super::numbers::span;
 use super::problem::{ChannelValues, Problem};
 use super::rank::{Reach, rank};
 use super::size::is_material;
-use super::trial::{Trial, tied, try_best};
+use super::trial::{Trial, tied, try_best, try_these};
 use super::whiten::Whitener;
 use crate::insight::criteria::consistent::CLOCK_SKEW_SEEN;
 use crate::insight::criteria::evident::{LEAST_GAIN, MOST_EFFECTS, MOST_RATE_EFFECTS, NUISANCE_GAIN};
@@ -163,8 +163,24 @@ impl<'a> Search<'a> {
         self.pending = near.map(|t| (t.card, t.gain)).collect();
         self.added.push(Added { card: best.card, ties: Vec::new() });
         let point = fit::fit(problem, &self.whitener, &best.point.x, &best.point.free);
-        self.point = bend(problem, &self.whitener, point, &self.held());
+        let bent = bend(problem, &self.whitener, point.clone(), &self.held());
+        self.point = self.with_yaw_apart(&point, best.card, bent.total()).unwrap_or(bent);
         true
+    }
+
+    /// Yaw's own share beside the effect `of` all axes, where that explains more than bending the response of `point`
+    /// does: a bend takes up most of what would name it.
+    fn with_yaw_apart(&mut self, point: &FitPoint, of: &Card, bent: f64) -> Option<FitPoint> {
+        let mut order: Vec<usize> = (0..self.found.len()).collect();
+        order.retain(|&j| self.found[j].card().apart_from.contains(&of.id));
+        order.dedup_by_key(|j| self.found[*j].card().id);
+        let trials = try_these(self.problem, &self.whitener, point, &self.found, &order);
+        let best = trials.into_iter().min_by(|a, b| a.point.total().total_cmp(&b.point.total()))?;
+        let pays = best.point.total() < bent - LEAST_GAIN.get() && is_material(best.card, &best.point.x);
+        (pays && !best.bounded(self.problem)).then(|| {
+            self.added.push(Added { card: best.card, ties: Vec::new() });
+            fit::fit(self.problem, &self.whitener, &best.point.x, &best.point.free)
+        })
     }
 }
 

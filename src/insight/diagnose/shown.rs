@@ -12,16 +12,16 @@ pub fn parameters(fitted: &FittedSelection, card: &Card) -> BTreeMap<String, Val
     let at = span(card);
     let x = &fitted.point().x;
     let places: Vec<usize> = fitted.places(card);
-    let tau_places: Vec<usize> =
-        [TAU.start, TAU.end - 1].iter().filter_map(|k| fitted.point().free.iter().position(|f| f == k)).collect();
+    let tau_places = TAU.map(|k| fitted.point().free.iter().position(|f| *f == k));
+    let tau_places: Vec<(usize, usize)> = tau_places.enumerate().filter_map(|(i, at)| Some((i, at?))).collect();
     let values: Vec<f64> = at.clone().map(|k| x[k]).collect();
-    let shown = |k: &[f64], tau: [f64; 2]| -> Vec<(String, f64, String)> {
+    let shown = |k: &[f64], tau: [f64; 4]| -> Vec<(String, f64, String)> {
         match card.shown {
             Some(shown) => shown(k, tau).into_iter().map(|(n, v, u)| (n.to_string(), v, u.to_string())).collect(),
             None => card.parameters.iter().zip(k).map(|(p, v)| (p.name.to_string(), *v, p.unit.to_string())).collect(),
         }
     };
-    let tau = [x[TAU.start], x[TAU.end - 1]];
+    let tau: [f64; 4] = std::array::from_fn(|i| x[TAU.start + i]);
     let here = shown(&values, tau);
     // By how much each shown value changes with the fitted ones (delta method).
     let mut out = BTreeMap::new();
@@ -33,7 +33,7 @@ pub fn parameters(fitted: &FittedSelection, card: &Card) -> BTreeMap<String, Val
             moved[j] += step;
             slopes.push((place, (shown(&moved, tau)[i].1 - value) / step));
         }
-        for (j, &place) in tau_places.iter().enumerate() {
+        for &(j, place) in &tau_places {
             let mut moved = tau;
             moved[j] += 1e-6;
             slopes.push((place, (shown(&values, moved)[i].1 - value) / 1e-6));

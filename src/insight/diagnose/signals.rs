@@ -41,7 +41,7 @@ pub fn signals(problem: &Problem, state: &Predictions, c: usize) -> Vec<(&'stati
         ("yaw rate", "rad/s", at(&w(2))),
         ("yaw rate times forward speed", "m/s2", at(&|f, i| w(2)(f, i) * v(0)(f, i))),
         ("yaw rate times sideways speed", "m/s2", at(&|f, i| w(2)(f, i) * v(1)(f, i))),
-        ("lag of the rates", "full sticks", at(&|f, i| state[f].lag(i))),
+        ("lag of the rates", "full sticks", at(&|f, i| state[f].lag(i).share)),
         ("position east", "m", at(&|f, i| records[f].position[0][i])),
         ("position north", "m", at(&|f, i| records[f].position[1][i])),
     ]

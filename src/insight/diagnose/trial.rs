@@ -49,8 +49,19 @@ pub fn try_best(
     found: &[Candidate],
     order: &[(usize, f64, f64)],
 ) -> Vec<Trial> {
+    try_these(problem, whitener, point, found, &chosen(found, order))
+}
+
+/// Refits candidates, each of an effect of its own.
+pub fn try_these(
+    problem: &Problem,
+    whitener: &Whitener,
+    point: &FitPoint,
+    found: &[Candidate],
+    which: &[usize],
+) -> Vec<Trial> {
     let trials = Trials { problem, whitener, point, found };
-    chosen(found, order).par_iter().map(|&j| trials.best(j)).collect()
+    which.par_iter().map(|&j| trials.best(j)).collect()
 }
 
 /// The candidates that are worth a fit, best first; one direction of each effect.

@@ -4,6 +4,7 @@ use super::AXES;
 use super::estimate::Estimated;
 use super::result::{BatteryEstimate, DragEstimate, Identification, Response, ThrustEstimate};
 use crate::insight::quality::{LogFinding, StreamSummary};
+use crate::model::effects::of_controller;
 use crate::model::vehicle::Vehicle;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -23,6 +24,8 @@ pub struct IdentificationDocument<'a> {
     thrust: &'a ThrustEstimate,
     /// 1 and 99 % of the thrust command in flight, -1..1.
     thrust_flown: Option<[f64; 2]>,
+    /// What the flight controller makes of commands beyond a lag: first parameters of effects, by the effects' names.
+    effects: BTreeMap<&'a str, &'a Estimated>,
     drag: &'a DragEstimate,
     battery: &'a BatteryEstimate,
     accelerometer_bias_m_s2: &'a [Estimated; 3],
@@ -49,6 +52,11 @@ impl<'a> IdentificationDocument<'a> {
             thrust_coefficients: &found.thrust_n,
             thrust: &found.thrust,
             thrust_flown: found.flown,
+            effects: found
+                .controller
+                .iter()
+                .filter_map(|(part, size)| Some((of_controller(*part)?.id, size)))
+                .collect(),
             drag: &found.drag,
             battery: &found.battery,
             accelerometer_bias_m_s2: &found.accelerometer_bias_m_s2,

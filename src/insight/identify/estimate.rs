@@ -1,6 +1,7 @@
 //! A value with its interval, or the reason why there is none.
 
 use super::solve::Solution;
+use crate::insight::criteria::identified::WIDEST_INTERVAL;
 use serde::Serialize;
 
 /// A value and its 95 % confidence interval; where `why` is set, the logs cannot tell it and the numbers are null.
@@ -46,6 +47,36 @@ impl Estimated {
     pub fn times(&self, factor: f64) -> Self {
         let scaled = |x: Option<f64>| x.map(|x| x * factor);
         Self { value: scaled(self.value), low: scaled(self.low), high: scaled(self.high), why: self.why.clone() }
+    }
+
+    /// The same less `by`.
+    pub fn less(&self, by: f64) -> Self {
+        let [value, low, high] = [self.value, self.low, self.high].map(|x| x.map(|x| x - by));
+        Self { value, low, high, why: self.why.clone() }
+    }
+
+    /// Its square root.
+    pub fn root(&self) -> Self {
+        let [value, low, high] = [self.value, self.low, self.high].map(|x| x.map(f64::sqrt));
+        Self { value, low, high, why: self.why.clone() }
+    }
+
+    /// One over it.
+    pub fn inverse(&self) -> Self {
+        let [value, low, high] = [self.value, self.high, self.low].map(|x| x.map(|x| 1.0 / x));
+        Self { value, low, high, why: self.why.clone() }
+    }
+
+    /// Why this number is not told, whatever it predicts.
+    pub fn vague(&self) -> Option<String> {
+        let value = self.value?;
+        match self.interval() {
+            None => Some(format!("the fit ended at the bound of the search, {value:.4}")),
+            Some([low, high]) if high - low > WIDEST_INTERVAL.get() * value.abs() => {
+                Some(format!("its interval, {low:.4} to {high:.4}, is wider than its value"))
+            }
+            Some(_) => None,
+        }
     }
 
     /// The interval, where there is one.

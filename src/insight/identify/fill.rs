@@ -12,6 +12,7 @@ use super::result::{ComparedChannel, Identification, Response};
 use super::{AXES, IdentifyOptions, battery};
 use crate::insight::predict::{PredictedChannel, Prediction};
 use crate::insight::prepare::data::Data;
+use crate::model::effects;
 
 /// Everything but the vehicle's numbers themselves.
 pub fn fill(
@@ -33,6 +34,7 @@ pub fn fill(
     for axis in 0..3 {
         rate::rate(out, data, axis, all, &judged, options);
     }
+    controller(out, all);
     pack(out, all, &judged);
     thrust::thrust(out, all, &judged, full);
     thrust::drag(out, all, &judged);
@@ -90,6 +92,16 @@ fn judged(estimate: Estimated, key: &str, judged: &Accepted) -> Estimated {
     match judged.left.get(key) {
         Some(why) => estimate.left(why),
         None => estimate,
+    }
+}
+
+/// What the vehicle has of a flight controller's answer.
+fn controller(out: &mut Identification, all: &Fits) {
+    for (part, size) in all.controller(&out.kept) {
+        if let Some(card) = effects::of_controller(part) {
+            out.found(&format!("effects.sizes.{}.{}", card.id, card.parameters[0].name), size.interval());
+        }
+        out.controller.insert(part, size.clone());
     }
 }
 

@@ -1,12 +1,17 @@
 //! Every fit to one part of the flights, and the vehicle that they make.
 
+use super::estimate::Estimated;
 use super::force::{DRAG_AT, ForceTerms, OFFSET, TAU, THRUST};
-use super::rates::RateAxis;
+use super::rate_loop::{self, RateLoop, RateLoopForm};
+use super::rates::{LookedFor, RateAxis};
 use super::solve::Solution;
 use super::thrust::{self, ThrustFit};
-use super::{AXES, IdentifyOptions, battery, bias};
+use super::{AXES, IdentifyOptions, battery, bias, room};
+use crate::base::stats::NORMAL_95;
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::dynamics::drag::{ellipsoid, semi_axes};
+use crate::model::effects::{self, ControllerPart};
+use crate::model::vehicle::extension::Extension;
 use crate::model::vehicle::identified::SensorOffsets;
 use crate::model::vehicle::{MaxRates, TimeConstants, Vehicle};
 use rayon::prelude::*;
@@ -17,6 +22,10 @@ const TOO_SHORT: &str = "too few stretches of flight for a fit";
 pub struct Fits {
     /// Roll, pitch, yaw: time constant (s), gain, offset (rad/s).
     pub rates: [Result<Solution, String>; 3],
+    /// What they have beside that.
+    pub rate_loop: RateLoop,
+    /// Gain with which the mixer makes room for turns, s/rad, where the motors tell it.
+    pub room: Option<Estimated>,
     /// As [`battery::fit`] orders it.
     pub battery: Result<Solution, String>,
     pub thrust: Result<ThrustFit, String>,
@@ -47,8 +56,21 @@ pub struct Kept {
 
 impl Fits {
     /// Fits everything that `part` of the flights tells. `drag` says whether its size is looked for.
-    pub fn new(data: &Data, part: DataPart, start: &Vehicle, options: &IdentifyOptions, drag: bool) -> Self {
-        let rates: Vec<_> = (0..3).into_par_iter().map(|axis| rate(data, part, axis, options)).collect();
+    pub fn new(
+        data: &Data,
+        part: DataPart,
+        start: &Vehicle,
+        options: &IdentifyOptions,
+        drag: bool,
+        form: RateLoopForm,
+    ) -> Self {
+        let axes = [0, 1, 2].map(|axis| RateAxis::new(data, axis, options.rate_cutoff_hz));
+        let rate_loop = rate_loop::fit(&axes, part, form).unwrap_or_default();
+        let rate = |axis: usize| match data.why_not(&format!("{} response", AXES[axis])) {
+            Some(why) => Err(why),
+            None => axes[axis].fit(part, rate_loop.beside(axis), LookedFor::Nothing).ok_or(TOO_SHORT.to_string()),
+        };
+        let rates: Vec<_> = (0..3).into_par_iter().map(rate).collect();
         let rates: [_; 3] = rates.try_into().unwrap_or_else(|_| std::array::from_fn(|_| Err(TOO_SHORT.into())));
         let battery = match data.why_not("battery") {
             Some(why) => Err(why),
@@ -58,7 +80,8 @@ impl Fits {
         // A curve over a voltage of which no pack is known would be no vehicle.
         let no_voltage = data.why_not("thrust over voltage").or_else(|| battery.as_ref().err().cloned());
         let bias = bias::fit(data, start.gravity_m_s2);
-        let mut out = Self { rates, battery, thrust: Err(TOO_SHORT.into()), no_drag, no_voltage, bias };
+        let mut out =
+            Self { rates, rate_loop, room: None, battery, thrust: Err(TOO_SHORT.into()), no_drag, no_voltage, bias };
         out.thrust = match data.why_not("thrust curve") {
             Some(why) => Err(why),
             None => {
@@ -66,6 +89,11 @@ impl Fits {
                 thrust::fit(data, part, &terms).ok_or(TOO_SHORT.to_string())
             }
         };
+        if let (Ok(thrust), [Ok(roll), Ok(pitch), Ok(yaw)]) = (&out.thrust, &out.rates)
+            && let Some(mixer) = &thrust.mixer
+        {
+            out.room = room::fit(data, part, &mixer.chain, [roll, pitch, yaw], &out.rate_loop);
+        }
         out
     }
 
@@ -103,6 +131,25 @@ impl Fits {
         }
     }
 
+    /// What the vehicle has of a flight controller's answer, with what is `kept` of the fits: it belongs to the lag
+    /// beside it.
+    pub fn controller(&self, kept: &Kept) -> Vec<(ControllerPart, &Estimated)> {
+        let [roll, pitch, yaw, _] = kept.lag;
+        let of_yaw = |part| matches!(part, ControllerPart::YawDelay | ControllerPart::YawInertia);
+        let told = self.rate_loop.parts().into_iter().filter(|(part, _)| roll && pitch && (yaw || !of_yaw(*part)));
+        told.chain(self.room.iter().filter(|_| kept.thrust).map(|k| (ControllerPart::Room, k))).collect()
+    }
+
+    /// Puts that into the effects of a vehicle, each to be drawn in training as far as its interval reaches.
+    fn extend(&self, extension: &mut Extension, kept: &Kept) {
+        for (part, size) in self.controller(kept) {
+            let (Some(value), Some([low, high])) = (size.value, size.interval()) else { continue };
+            if let Some(card) = effects::of_controller(part) {
+                extension.put(card.id, card.parameters[0].name, value, (high - low) / (2.0 * NORMAL_95));
+            }
+        }
+    }
+
     /// `start` with what is `kept` of the fits.
     pub fn vehicle(&self, data: &Data, part: DataPart, start: &Vehicle, kept: &Kept, full_rate: [f64; 3]) -> Vehicle {
         let mut v = start.clone();
@@ -120,6 +167,7 @@ impl Fits {
                 sensors.gyro_rad_s[axis] = fit.values[2];
             }
         }
+        self.extend(&mut v.effects, kept);
         if let Ok(fit) = &self.battery {
             let pack = battery::pack(data, part, fit, &start.battery);
             if kept.volts {
@@ -160,11 +208,4 @@ impl Fits {
         }
         v
     }
-}
-
-fn rate(data: &Data, part: DataPart, axis: usize, options: &IdentifyOptions) -> Result<Solution, String> {
-    if let Some(why) = data.why_not(&format!("{} response", AXES[axis])) {
-        return Err(why);
-    }
-    RateAxis::new(data, axis, options.rate_cutoff_hz).fit(part, false).ok_or(TOO_SHORT.to_string())
 }

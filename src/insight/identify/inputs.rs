@@ -4,7 +4,7 @@ use crate::base::stats::quantile;
 use crate::flight::series::held;
 use crate::insight::prepare::data::{Chosen, Data};
 use crate::insight::prepare::flight::PreparedFlight;
-use crate::insight::prepare::lag::lagged;
+use crate::insight::prepare::lag::{Following, followed};
 use crate::insight::prepare::rotors::columns;
 
 /// One flight's commands to whatever lifts it, each -1 to 1.
@@ -61,7 +61,7 @@ impl Inputs {
     pub fn at(&self, flight: usize, time: &[f64], tau: f64) -> Vec<Vec<f64>> {
         let FlightInputs { time_s, columns } = &self.flights[flight];
         let one = |column: &Vec<f64>| {
-            if self.at_once { held(time_s, column, time) } else { lagged(time_s, column, time, tau, 0.0) }
+            if self.at_once { held(time_s, column, time) } else { followed(time_s, column, time, Following::lag(tau)) }
         };
         columns.iter().map(one).collect()
     }

@@ -6,7 +6,7 @@ use super::estimate::Estimated;
 use super::fits::{Fits, Kept};
 use super::force::{DRAG_AT, TAU};
 use crate::base::stats::Score;
-use crate::insight::criteria::identified::{UNEXPLAINED_MOST, WIDEST_INTERVAL};
+use crate::insight::criteria::identified::UNEXPLAINED_MOST;
 use crate::insight::predict::{PredictedChannel, Prediction};
 use std::collections::BTreeMap;
 
@@ -21,18 +21,6 @@ pub fn unpredictive(score: Option<Score>) -> Option<String> {
     let score = score?;
     let poor = score.r2.is_nan() || 1.0 - score.r2 >= UNEXPLAINED_MOST.get();
     poor.then(|| format!("it does not predict: R2 {:.2} on the validation part", score.r2))
-}
-
-/// Why this number is not told, whatever it predicts.
-pub fn vague(estimate: &Estimated) -> Option<String> {
-    let value = estimate.value?;
-    match estimate.interval() {
-        None => Some(format!("the fit ended at the bound of the search, {value:.4}")),
-        Some([low, high]) if high - low > WIDEST_INTERVAL.get() * value.abs() => {
-            Some(format!("its interval, {low:.4} to {high:.4}, is wider than its value"))
-        }
-        Some(_) => None,
-    }
 }
 
 /// The validation score of a channel.
@@ -78,11 +66,11 @@ fn rate(axis: usize, all: &Fits, validation: &Prediction, out: &mut Accepted) {
         return out.leave(&rate_key, why);
     }
     let Ok(fit) = &all.rates[axis] else { return };
-    if let Some(why) = vague(&Estimated::of(fit, 0)) {
+    if let Some(why) = Estimated::of(fit, 0).vague() {
         out.kept.lag[axis] = false;
         out.leave(&lag_key, why);
     }
-    if let Some(why) = vague(&Estimated::of(fit, 1)) {
+    if let Some(why) = Estimated::of(fit, 1).vague() {
         out.kept.rate[axis] = false;
         out.leave(&rate_key, why);
     }
@@ -95,7 +83,7 @@ fn battery(all: &Fits, validation: &Prediction, out: &mut Accepted) {
     };
     let rate = Estimated::of(fit, super::battery::RATE);
     let rises = rate.value.is_some_and(|rate| rate > 0.0).then(|| "the voltage rises in flight".to_string());
-    let why = rises.or_else(|| unpredictive(score(validation, "voltage"))).or_else(|| vague(&rate));
+    let why = rises.or_else(|| unpredictive(score(validation, "voltage"))).or_else(|| rate.vague());
     if let Some(why) = why {
         out.kept.discharge = false;
         out.leave("battery.rate_v_s", format!("{why}; the base vehicle's, in proportion to the voltage"));
@@ -110,7 +98,7 @@ fn thrust(all: &Fits, validation: &Prediction, flown: &Estimated, out: &mut Acce
         }
         Ok(fit) => fit,
     };
-    if let Some(why) = unpredictive(score(validation, "specific force z")).or_else(|| vague(flown)) {
+    if let Some(why) = unpredictive(score(validation, "specific force z")).or_else(|| flown.vague()) {
         (out.kept.thrust, out.kept.lag[3]) = (false, false);
         out.leave("thrust_n", why.clone());
         return out.leave("time_constant_s.thrust", why);
@@ -120,7 +108,7 @@ fn thrust(all: &Fits, validation: &Prediction, flown: &Estimated, out: &mut Acce
     }
     // Of a chain, the rotors' own lag is the one that is looked for.
     let lag = Estimated::of(fit.motors.as_ref().unwrap_or(&fit.solution), TAU);
-    if let Some(why) = vague(&lag) {
+    if let Some(why) = lag.vague() {
         out.kept.lag[3] = false;
         out.leave("time_constant_s.thrust", why);
     }
@@ -134,7 +122,7 @@ fn drag(all: &Fits, validation: &Prediction, out: &mut Accepted) {
             let across = ["specific force x", "specific force y"].map(|name| unpredictive(score(validation, name)));
             let largest =
                 (0..3).map(|k| DRAG_AT + k).max_by(|&a, &b| fit.solution.values[a].total_cmp(&fit.solution.values[b]));
-            let largest = largest.and_then(|k| vague(&Estimated::of(&fit.solution, k)));
+            let largest = largest.and_then(|k| Estimated::of(&fit.solution, k).vague());
             match across {
                 [Some(why), Some(_)] => Some(why),
                 _ => largest,

@@ -9,6 +9,7 @@ use crate::insight::criteria::identified::{CALM, CALM_LEAST};
 use crate::insight::estimate::range::TIME_CONSTANT_S;
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::insight::prepare::flight::PreparedFlight;
+use crate::insight::prepare::lag::Following;
 use crate::insight::prepare::rotors::columns;
 use crate::model::vehicle::identified::RotorChain;
 
@@ -41,7 +42,7 @@ pub fn fit(data: &Data, part: DataPart, by_voltage: bool) -> Option<Mixer> {
     let volts = Data::pick(&data.signals(voltage), &chosen);
     let middle = mean(&volts);
     let measured = Data::pick(&outputs, &chosen);
-    let command = |lag: f64| Data::pick(&data.signals(|flight| flight.response(3, lag, 0.0)), &chosen);
+    let command = |lag: f64| Data::pick(&data.signals(|flight| flight.response(3, Following::lag(lag))), &chosen);
     let first = command(TAUS_S[0]);
     if first.is_empty() || first.iter().any(|u| !u.is_finite()) || middle.is_nan() {
         return None;
@@ -79,7 +80,7 @@ pub fn fit(data: &Data, part: DataPart, by_voltage: bool) -> Option<Mixer> {
 fn calm(flight: &PreparedFlight) -> Vec<f64> {
     let mut behind = vec![0.0; flight.time.len()];
     for axis in 0..3 {
-        let (wanted, measured) = (flight.response(axis, TAUS_S[0], 0.0), flight.measured(axis));
+        let (wanted, measured) = (flight.response(axis, Following::lag(TAUS_S[0])), flight.measured(axis));
         let most = wanted.iter().map(|rate| rate.abs()).fold(1e-3, f64::max);
         behind.iter_mut().zip(wanted.iter().zip(&measured)).for_each(|(b, (w, m))| *b += (w - m).abs() / most);
     }
@@ -87,7 +88,7 @@ fn calm(flight: &PreparedFlight) -> Vec<f64> {
 }
 
 /// Mean motor output on the IMU's clock, 0..1.
-fn output(flight: &PreparedFlight) -> Option<Vec<f64>> {
+pub fn output(flight: &PreparedFlight) -> Option<Vec<f64>> {
     let motors = &flight.quality.log.motors;
     let columns = columns(motors)?;
     let mean = |i: usize| columns.iter().map(|m| m[i]).sum::<f64>() / columns.len() as f64;

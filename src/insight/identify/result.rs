@@ -7,9 +7,11 @@ use super::{AXES, IdentifyOptions, fastest};
 use crate::base::stats::Score;
 use crate::flight::spans::Span;
 use crate::insight::prepare::data::Data;
+use crate::model::effects::ControllerPart;
 use crate::model::vehicle::identified::{Origin, ThrustSource};
 use crate::model::vehicle::{Identified, LogSpan, Vehicle};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// A first-order response: a row of the paper's Table 1. Scores are those of the validation part.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -117,6 +119,8 @@ pub struct Identification {
     pub thrust: ThrustEstimate,
     /// Drag.
     pub drag: DragEstimate,
+    /// What the flight controller makes of commands beyond a lag, as far as the logs tell it.
+    pub controller: BTreeMap<ControllerPart, Estimated>,
     /// Discharge.
     pub battery: BatteryEstimate,
     /// Constant error of the accelerometer along x, y, z, m/s2.
@@ -168,6 +172,7 @@ impl Identification {
             thrust_n: Default::default(),
             thrust: Default::default(),
             drag: Default::default(),
+            controller: Default::default(),
             battery: Default::default(),
             accelerometer_bias_m_s2: Default::default(),
             full_rate_rad_s,
@@ -207,6 +212,15 @@ impl Identification {
         rows.push(("thrust at full throttle".into(), self.thrust.full_n.clone(), if small { 3 } else { 1 }, "N"));
         if self.thrust.rotor_lag_s.value.is_some() {
             rows.push(("lag of the rotors".into(), self.thrust.rotor_lag_s.times(1e3), 1, "ms"));
+        }
+        for (part, size) in &self.controller {
+            rows.push(match part {
+                ControllerPart::Delay => ("delay of the rates".into(), size.times(1e3), 1, "ms"),
+                ControllerPart::YawDelay => ("delay of yaw beyond that".into(), size.times(1e3), 1, "ms"),
+                ControllerPart::YawInertia => ("natural frequency of yaw".into(), size.inverse().root(), 1, "rad/s"),
+                ControllerPart::Slew => ("angular acceleration, at most".into(), size.inverse(), 0, "rad/s2"),
+                ControllerPart::Room => ("throttle kept free for turns".into(), size.clone(), 3, "s/rad"),
+            });
         }
         for (axis, k) in ["x", "y", "z"].iter().zip(&self.drag.k_1_m) {
             rows.push((format!("drag over mass, {axis}"), k.clone(), 4, "1/m"));

@@ -3,11 +3,12 @@
 use super::{PredictOptions, drive, together};
 use crate::insight::diagnose::horizon::{self, Horizon};
 use crate::insight::diagnose::model::Model;
-use crate::insight::diagnose::numbers::TAU;
+use crate::insight::diagnose::numbers::{self, TAU};
 use crate::insight::diagnose::predict::Predicted;
 use crate::insight::diagnose::record::{FlightRecord, full_rate};
 use crate::insight::prepare::data::Data;
 use crate::insight::prepare::flight::PreparedFlight;
+use crate::model::effects::{self, ControllerPart};
 use crate::model::vehicle::Vehicle;
 use crate::model::vehicle::identified::{SensorOffsets, ThrustSource};
 
@@ -83,6 +84,10 @@ pub fn predicted(data: &Data, vehicle: &Vehicle, options: &PredictOptions) -> Si
     let mut x = model.base.clone();
     if source == ThrustSource::Speeds {
         x[TAU.start + 3] = NONE_S;
+    }
+    if source != ThrustSource::Command {
+        // What a mixer makes of the command is in its outputs.
+        effects::of_controller(ControllerPart::Room).into_iter().for_each(|card| x[numbers::span(card)].fill(0.0));
     }
     let state = |(f, record): (usize, &FlightRecord)| Predicted::new(&model, record, f, &x);
     let states: Vec<Predicted> = records.iter().enumerate().map(state).collect();

@@ -1,7 +1,7 @@
 //! A checked log on one clock, that of the IMU.
 
 use super::attitude::attitude;
-use super::lag::lagged;
+use super::lag::{Following, followed};
 use crate::flight::Stream;
 use crate::flight::lowpass::LowPass;
 use crate::flight::series::{held, interpolated, period};
@@ -46,11 +46,11 @@ impl PreparedFlight {
         Self { voltage, velocity, attitude, position, usable, block, time, quality }
     }
 
-    /// What command `k` of the setpoints, delayed by `delay`, has become at each sample behind a first-order lag of
-    /// `tau` seconds. Commands are held until the next, and the lag is integrated exactly.
-    pub fn response(&self, k: usize, tau: f64, delay: f64) -> Vec<f64> {
+    /// What command `k` of the setpoints has become at each sample, as `by` follows it. Commands are held until the
+    /// next, and the response is integrated exactly.
+    pub fn response(&self, k: usize, by: Following) -> Vec<f64> {
         let setpoint = &self.quality.log.setpoint;
-        lagged(&setpoint.time_s, &setpoint.column(k), &self.time, tau, delay)
+        followed(&setpoint.time_s, &setpoint.column(k), &self.time, by)
     }
 
     /// Number `k` of the IMU.

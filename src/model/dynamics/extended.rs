@@ -12,8 +12,8 @@ use crate::model::vehicle::Vehicle;
 pub use memory::EffectMemory;
 pub use motion::{Drive, RigidBody, moved};
 pub use stages::{
-    ForceInputs, actuator_response, body_rates, command_delays, elapsed, force, loaded, specific_force, terminal,
-    throttle,
+    ForceInputs, TurnError, actuator_response, body_rates, command_delays, elapsed, force, loaded, specific_force,
+    terminal, throttle,
 };
 
 /// Steps are divided until each is at most this long, s.
@@ -105,12 +105,9 @@ fn part<R: Real>(s: &mut State<R>, p: &Extended<R>, memory: &mut EffectMemory<R>
     let (command, slope) = actuator_response(p, s.command, memory.slope, sent, voltage, h);
     let mean: [R; 4] = build!(|i| (s.command[i] + command[i]) * R::of(0.5));
     let rates = body_rates(p, mean);
-    let mut rate_error = R::zero();
-    for i in 0..3 {
-        rate_error = rate_error + (sent[i] - mean[i]).abs();
-    }
+    let turn_error = TurnError::of(p, memory.line[0], sent, mean);
     let (elapsed, height) = (elapsed(p, open), s.position[2]);
-    let drive = Drive { command: mean[3], voltage, rates, height, rate_error, elapsed };
+    let drive = Drive { command: mean[3], voltage, rates, height, turn_error, elapsed };
     let body = RigidBody { position: s.position, velocity: s.velocity, attitude: s.attitude };
     let RigidBody { position, velocity, attitude } = moved(&body, p, &drive, h);
     memory.slope = slope;

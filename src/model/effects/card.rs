@@ -31,6 +31,10 @@ pub struct Card {
     pub role: Role,
     /// Numbers of the compact model that take it up where it is not fitted.
     pub absorbed_by: &'static [CompactNumber],
+    /// Effects of all axes beside which this one is yaw's own share of the same.
+    pub apart_from: &'static [&'static str],
+    /// Which part of a flight controller's answer it is, where identification looks for it.
+    pub controller: Option<ControllerPart>,
     /// An effect with the same mean, and what tells the two apart.
     pub twin: Option<Twin>,
     /// What gives it away.
@@ -43,9 +47,9 @@ pub struct Card {
     pub shown: Option<ShownParameters>,
 }
 
-/// From the equation's parameters (and the time constants of the roll rate and of the thrust, s) to what people read:
-/// name, value, unit.
-pub type ShownParameters = fn(&[f64], [f64; 2]) -> Vec<(&'static str, f64, &'static str)>;
+/// From the equation's parameters (and the time constants of roll, pitch, yaw and thrust, s) to what people read: name,
+/// value, unit.
+pub type ShownParameters = fn(&[f64], [f64; 4]) -> Vec<(&'static str, f64, &'static str)>;
 
 impl Card {
     /// What most effects have in common.
@@ -64,6 +68,8 @@ impl Card {
         response: RateResponse::FirstOrder,
         role: Role::InStages,
         absorbed_by: &[],
+        apart_from: &[],
+        controller: None,
         twin: None,
         signature: "",
         rivals: &[],
@@ -165,6 +171,21 @@ pub enum CompactNumber {
     ThrustTime,
     Thrust,
     Drag,
+}
+
+/// What a flight controller makes of commands beyond a lag, by the first parameter of an effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ControllerPart {
+    /// Delay of all rates, s.
+    Delay,
+    /// By how much more yaw is delayed, s.
+    YawDelay,
+    /// T2 of yaw's second order, s2.
+    YawInertia,
+    /// One over the largest angular acceleration of roll and pitch, s2/rad.
+    Slew,
+    /// Throttle that the mixer keeps free for turns, over the error of the rates, s/rad.
+    Room,
 }
 
 /// An effect that has the same mean as another.

@@ -16,7 +16,7 @@ impl Effect for MixerThrustLoss {
         reads: &[Quantity::RateError],
         channels: &[ResidualChannel::Force],
         signature: "vertical specific force dips while the rates are behind their commands",
-        rivals: &["rate_thrust_coupling"],
+        rivals: &["rate_thrust_coupling", "mixer_room"],
         manoeuvre: ("flips and sharp steps at one throttle", &["roll-flip", "pitch-flip", "rate-steps"]),
         ..Card::BLANK
     };

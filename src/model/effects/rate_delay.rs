@@ -1,6 +1,8 @@
 //! Pure delay of the rate commands: a(t) becomes a(t - d).
 
-use super::{Card, CommandDelay, CompactNumber, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
+use super::{
+    Card, CommandDelay, CompactNumber, ControllerPart, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel,
+};
 use crate::base::lane::Real;
 
 pub struct RateDelay;
@@ -15,6 +17,7 @@ impl Effect for RateDelay {
         writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
         absorbed_by: &[CompactNumber::RollTime, CompactNumber::PitchTime, CompactNumber::YawTime],
+        controller: Some(ControllerPart::Delay),
         signature: "the gyro lags the simulated rate by the same time at every frequency",
         rivals: &["rate_second_order", "stream_offset", "command_dropout", "rate_slew_limit", "yaw_delay"],
         manoeuvre: (

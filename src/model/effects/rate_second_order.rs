@@ -22,7 +22,7 @@ impl Effect for RateSecondOrder {
             "sharp steps and fast stick doublets, then hands off",
             &["rate-steps", "roll-doublets", "pitch-doublets"],
         ),
-        shown: Some(|k, [tau, _]| {
+        shown: Some(|k, [tau, ..]| {
             let wn = 1.0 / k[0].max(1e-9).sqrt();
             vec![("wn", wn, "rad/s"), ("zeta", 0.5 * tau * wn, "1")]
         }),
@@ -31,6 +31,6 @@ impl Effect for RateSecondOrder {
 
     #[inline(always)]
     fn actuator<R: Real>(k: &[R], actuator: &mut Actuator<R>) {
-        actuator.inertia = actuator.inertia + k[0];
+        actuator.inertia = actuator.inertia.map(|own| own + k[0]);
     }
 }

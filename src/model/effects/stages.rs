@@ -30,8 +30,8 @@ pub struct Actuator<R> {
     pub tau: [R; 4],
     /// That of falling thrust, s.
     pub tau_down: R,
-    /// T2 of T2 w'' + tau w' + w = w_sp, s2.
-    pub inertia: R,
+    /// T2 of T2 w'' + tau w' + w = w_sp, of each axis, s2.
+    pub inertia: [R; 3],
     /// One over the largest angular acceleration of each axis, s2/rad.
     pub slew: [R; 3],
     /// How much the terminal voltage is below full, V.
@@ -71,6 +71,8 @@ pub struct ThrustInput<R> {
     pub voltage: R,
     /// Half way between full and empty, V.
     pub middle_v: R,
+    /// Sum over the axes of |command - response|, rad/s.
+    pub behind: R,
 }
 
 /// Motion through the air.

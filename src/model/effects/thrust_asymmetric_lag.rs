@@ -19,7 +19,7 @@ impl Effect for ThrustAsymmetricLag {
         signature: "vertical specific force lags after throttle cuts, not after punches",
         rivals: &["thrust_delay", "throttle_offset"],
         manoeuvre: ("throttle steps up and down of the same size, and cuts", &["throttle-steps", "punch", "chop"]),
-        shown: Some(|k, [_, tau]| vec![("tau_up", tau, "s"), ("tau_down", tau + k[0], "s")]),
+        shown: Some(|k, [.., tau]| vec![("tau_up", tau, "s"), ("tau_down", tau + k[0], "s")]),
         ..Card::BLANK
     };
 

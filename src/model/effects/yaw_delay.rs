@@ -2,7 +2,9 @@
 //! made by torque, not by thrust.
 //! The catalogue had one delay for all axes; IndiFlight's flights ask for two.
 
-use super::{Card, CommandDelay, CompactNumber, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
+use super::{
+    Card, CommandDelay, CompactNumber, ControllerPart, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel,
+};
 use crate::base::lane::Real;
 
 pub struct YawDelay;
@@ -17,6 +19,8 @@ impl Effect for YawDelay {
         writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
         absorbed_by: &[CompactNumber::YawTime],
+        apart_from: &["rate_delay", "link_delay"],
+        controller: Some(ControllerPart::YawDelay),
         signature: "the gyro's yaw lags the simulated rate by another time than its roll and pitch",
         rivals: &["rate_delay"],
         manoeuvre: ("sharp yaw steps and doublets", &["yaw-steps", "yaw-doublets", "yaw-spin"]),

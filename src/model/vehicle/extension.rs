@@ -41,6 +41,25 @@ impl Extension {
         self.sizes.is_empty()
     }
 
+    /// Sets a size that is known with this standard deviation (0: not randomised), whatever else is known.
+    pub fn put(&mut self, effect: &str, parameter: &str, size: f64, deviation: f64) {
+        self.sizes.entry(effect.into()).or_default().insert(parameter.into(), size);
+        let key = format!("{effect}.{parameter}");
+        if let Some(at) = self.uncertain.iter().position(|known| *known == key) {
+            self.uncertain.remove(at);
+            self.covariance.remove(at);
+            for row in &mut self.covariance {
+                row.remove(at);
+            }
+        }
+        if deviation > 0.0 {
+            self.uncertain.push(key);
+            self.covariance.iter_mut().for_each(|row| row.push(0.0));
+            let alone = (1..self.uncertain.len()).map(|_| 0.0).chain([deviation * deviation]);
+            self.covariance.push(alone.collect());
+        }
+    }
+
     /// The parameters of all effects of the simulator, moved by `by`, within their bounds.
     pub fn drawn(&self, by: &[f64; COUNT]) -> [f64; COUNT] {
         let mut out = [0.0; COUNT];

@@ -36,6 +36,7 @@ pub const CATALOGUE: &[Entry] = &[
     entry_of("yaw_delay", "extra", "s", 0.004, 0.03, false),
     entry_of("thrust_delay", "delay", "s", 0.002, 0.03, false),
     entry_of("rate_second_order", "wn", "rad/s", 60.0, 150.0, false),
+    entry_of("yaw_second_order", "wn", "rad/s", 15.0, 60.0, false),
     entry_of("rate_slew_limit", "limit", "rad/s2", 100.0, 600.0, false),
     entry_of("rate_expo", "e", "", 0.05, 0.5, false),
     entry_of("response_voltage", "k", "1/V", 0.05, 0.2, false),
@@ -56,6 +57,7 @@ pub const CATALOGUE: &[Entry] = &[
     entry_of("translational_lift", "k", "1/m", 0.003, 0.03, false),
     entry_of("propwash", "k", "", 0.08, 0.33, false),
     entry_of("ground_effect", "k", "", 1.0, 12.0, false),
+    entry_of("mixer_room", "k", "s/rad", 0.02, 0.1, false),
     entry_of("mixer_thrust_loss", "k", "", 0.02, 0.1, false),
     entry_of("rate_thrust_coupling", "k", "m/s2 per (rad/s)2", 0.002, 0.02, false),
     entry_of("thrust_fade", "k", "", 0.02, 0.08, false),
@@ -95,7 +97,7 @@ pub fn pair(rng: &mut StdRng) -> [&'static str; 2] {
     loop {
         let [a, b] = [any(rng), any(rng)];
         // Each of these replaces the same law.
-        let rival = |id| matches!(id, "rate_second_order" | "rate_slew_limit");
+        let rival = |id| matches!(id, "rate_second_order" | "yaw_second_order" | "rate_slew_limit");
         if a != b && !(rival(a) && rival(b)) {
             return [a, b];
         }
@@ -111,7 +113,7 @@ impl Entry {
 
     /// Whether a smaller size is more of it.
     pub fn grows_downwards(&self) -> bool {
-        matches!(self.id, "rate_second_order" | "rate_slew_limit")
+        matches!(self.id, "rate_second_order" | "yaw_second_order" | "rate_slew_limit")
     }
 
     /// Whether it changes how the vehicle flies, and in ordinary flight.
@@ -127,6 +129,6 @@ impl Entry {
 
     /// Whether it vanishes with its size.
     pub fn shrinks(&self) -> bool {
-        !matches!(self.id, "rate_second_order" | "rate_slew_limit" | "thrust_asymmetric_lag")
+        !self.grows_downwards() && self.id != "thrust_asymmetric_lag"
     }
 }

@@ -19,7 +19,7 @@ pub fn of(entry: &Entry, size: f64, vehicle: &Vehicle, rng: &mut StdRng) -> Part
     let main = one(entry.main, size, entry.unit);
     let known = |values: Vec<Value>| (values, Vec::new());
     match entry.id {
-        "rate_second_order" => known(vec![main, one("zeta", rng.random_range(0.5..0.9), "")]),
+        "rate_second_order" | "yaw_second_order" => known(vec![main, one("zeta", rng.random_range(0.5..0.9), "")]),
         "rate_cross_coupling" => {
             let mut either = || if rng.random_bool(0.5) { size } else { -size };
             known(vec![one("kxy", either(), ""), one("kyx", either(), "")])

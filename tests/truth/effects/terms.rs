@@ -52,6 +52,8 @@ pub struct Terms {
 
     /// Natural frequency and damping that replace the lag.
     pub second_order: Option<[f64; 2]>,
+    /// The same of yaw alone.
+    pub yaw_second_order: Option<[f64; 2]>,
     pub slew: Option<f64>,
     pub expo: f64,
     pub response_voltage: f64,
@@ -69,6 +71,7 @@ pub struct Terms {
     pub translational_lift: f64,
     pub propwash: f64,
     pub ground_effect: f64,
+    pub mixer_room: f64,
     pub mixer_loss: f64,
     pub rate_thrust: f64,
     pub fade: f64,
@@ -133,6 +136,7 @@ impl Terms {
             "yaw_delay" => self.yaw_delay = get("extra"),
             "thrust_delay" => self.thrust_delay = get("delay"),
             "rate_second_order" => self.second_order = Some([get("wn"), get("zeta")]),
+            "yaw_second_order" => self.yaw_second_order = Some([get("wn"), get("zeta")]),
             "rate_slew_limit" => self.slew = Some(get("limit")),
             "rate_expo" => self.expo = get("e"),
             "response_voltage" => self.response_voltage = get("k"),
@@ -153,6 +157,7 @@ impl Terms {
             "translational_lift" => self.translational_lift = get("k"),
             "propwash" => self.propwash = get("k"),
             "ground_effect" => self.ground_effect = get("k"),
+            "mixer_room" => self.mixer_room = get("k"),
             "mixer_thrust_loss" => self.mixer_loss = get("k"),
             "rate_thrust_coupling" => self.rate_thrust = get("k"),
             "thrust_fade" => self.fade = get("k"),

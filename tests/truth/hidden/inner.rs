@@ -28,6 +28,10 @@ pub fn change(craft: &Craft, world: &World, command: [f64; 4], time: f64) -> [Ve
         let slower = 1.0 + terms.response_voltage * (vehicle.full_v - battery::terminal(craft, world, time));
         Vector3::from_fn(|k, _| error[k] / (vehicle.tau[k] * slower))
     };
+    if let Some([wn, zeta]) = terms.yaw_second_order {
+        spin.z = error.z * (wn * wn) - craft.spin.z * (2.0 * zeta * wn);
+        rates.z = craft.spin.z;
+    }
     if let Some(limit) = terms.slew {
         let limits = Vector3::new(limit, limit, YAW_SLEW * limit);
         rates = rates.zip_map(&limits, |rate, limit| rate.clamp(-limit, limit));

@@ -79,6 +79,12 @@ impl Link {
         [x, y, latest(&self.yaw, time).unwrap_or(0.0), latest(&self.thrust, time).unwrap_or(-1.0)]
     }
 
+    /// The newest command, whether it has arrived or not.
+    pub fn newest(&self) -> [f64; 4] {
+        let [x, y] = self.rates.back().map_or([0.0; 2], |sent| sent.1);
+        [x, y, self.yaw.back().map_or(0.0, |sent| sent.1), self.thrust.back().map_or(-1.0, |sent| sent.1)]
+    }
+
     /// When the next command arrives after `time` and before `end`, if one does.
     pub fn next_edge(&self, time: f64, end: f64) -> Option<f64> {
         let edges = self.rates.iter().map(|c| c.0).chain(self.yaw.iter().map(|c| c.0));

@@ -23,7 +23,8 @@ pub fn specific_force(craft: &Craft, world: &World, inputs: &Inputs, command: [f
     let v = air::velocity(craft, world, &inputs.air.velocity);
     let rates = inner::body_rates(craft, &world.terms);
     let wanted = inner::wanted(craft, world, command);
-    let flow = Flow { air: &v, rates: &rates, wanted: &wanted, time };
+    let asked = inner::wanted(craft, world, inputs.link.newest());
+    let flow = Flow { air: &v, rates: &rates, wanted: &wanted, asked: &asked, time };
     let lift = thrust::flying(craft, world, &flow);
     let mut force = Vector3::new(0.0, 0.0, lift) + air::force(craft, world, &flow, lift);
     if let Some(swing) = world.terms.swing {

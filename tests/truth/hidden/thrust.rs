@@ -17,7 +17,9 @@ pub struct Flow<'a> {
     /// Air velocity (m/s) and body rates (rad/s), body frame.
     pub air: &'a Vector3<f64>,
     pub rates: &'a Vector3<f64>,
+    /// Rates asked for by the command that has arrived, and by the newest, rad/s.
     pub wanted: &'a Vector3<f64>,
+    pub asked: &'a Vector3<f64>,
     pub time: f64,
 }
 
@@ -39,9 +41,18 @@ pub fn change(craft: &Craft, world: &World, command: f64) -> f64 {
 
 /// Thrust over mass without flow, m/s2.
 pub fn standing(craft: &Craft, world: &World, time: f64) -> f64 {
+    turning(craft, world, time, 0.0)
+}
+
+/// The same while the rates are so far behind what is wanted, summed over the axes, rad/s.
+fn turning(craft: &Craft, world: &World, time: f64, behind: f64) -> f64 {
     let terms = &world.terms;
     let volts = battery::of_thrust(craft, world, time);
-    let mut thrust = per_mass(&world.vehicle, craft.u + 2.0 * terms.throttle_offset, volts);
+    // Motors are neither slower than stopped nor faster than full.
+    let room = (terms.mixer_room * behind).min(0.5);
+    let throttle = (0.5 + 0.5 * craft.u).max(room).min(1.0 - room);
+    let command = if room > 0.0 { 2.0 * throttle - 1.0 } else { craft.u };
+    let mut thrust = per_mass(&world.vehicle, command + 2.0 * terms.throttle_offset, volts);
     thrust *= 1.0 - terms.fade * time / FADE_S;
     if let Some([loss, tau]) = terms.heat {
         thrust *= 1.0 - loss * (1.0 - (-time / tau).exp());
@@ -55,7 +66,7 @@ pub fn standing(craft: &Craft, world: &World, time: f64) -> f64 {
 /// Thrust over mass in flight, m/s2.
 pub fn flying(craft: &Craft, world: &World, flow: &Flow) -> f64 {
     let terms = &world.terms;
-    let mut thrust = standing(craft, world, flow.time);
+    let mut thrust = turning(craft, world, flow.time, (flow.asked - flow.rates).abs().sum());
     if terms.momentum > 0.0 {
         thrust = inflow::thrust(thrust, flow.air, terms.momentum);
     }

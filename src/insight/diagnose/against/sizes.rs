@@ -62,7 +62,7 @@ fn shown(fitted: &FittedSelection, suspect: &Suspect, x: &[f64]) -> Vec<(String,
     let k = &x[suspect.numbers.clone()];
     if let Some(card) = suspect.card {
         return match card.shown {
-            Some(shown) => shown(k, [x[TAU.start], x[TAU.end - 1]])
+            Some(shown) => shown(k, std::array::from_fn(|i| x[TAU.start + i]))
                 .into_iter()
                 .map(|(name, value, unit)| (name.to_string(), value, unit.to_string()))
                 .collect(),

@@ -5,7 +5,7 @@ use crate::insight::criteria::shown::{REMARKED_DELAY_S, REMARKED_ERROR, REMARKED
 use crate::insight::identify::estimate::Estimated;
 use crate::insight::identify::fits::Fits;
 use crate::insight::identify::judge::Accepted;
-use crate::insight::identify::rates::RateAxis;
+use crate::insight::identify::rates::{BesideLag, DELAY, LookedFor, RateAxis};
 use crate::insight::identify::result::{Identification, Response};
 use crate::insight::identify::{AXES, IdentifyOptions};
 use crate::insight::prepare::data::{Data, DataPart};
@@ -55,24 +55,28 @@ pub fn rate(
             out.found(&rate_key, out.max_rate_rad_s[axis].times(degrees).interval());
         }
     }
-    delay(out, data, axis, options);
+    delay(out, data, axis, all, options);
 }
 
 /// Says where a pure delay would predict a rate better than the lag alone.
-fn delay(out: &mut Identification, data: &Data, axis: usize, options: &IdentifyOptions) {
+fn delay(out: &mut Identification, data: &Data, axis: usize, all: &Fits, options: &IdentifyOptions) {
     let response = &out.response[axis];
-    if response.r2.is_none_or(|r2| r2 >= REMARKED_R2.get()) {
+    if all.rate_loop.delay_s.value.is_some() || response.r2.is_none_or(|r2| r2 >= REMARKED_R2.get()) {
         return;
     }
     let rate = RateAxis::new(data, axis, options.rate_cutoff_hz);
-    let (Some(plain), Some(late)) = (rate.fit(DataPart::Train, false), rate.fit(DataPart::Train, true)) else { return };
-    let [plain, better] = [&plain, &late].map(|fit| rate.score(DataPart::Validation, fit));
-    if late.values[3] > REMARKED_DELAY_S.get() && better.rmse < REMARKED_ERROR.get() * plain.rmse {
+    let none = BesideLag::default();
+    let fits = [LookedFor::Nothing, LookedFor::Delay].map(|look| rate.fit(DataPart::Train, none, look));
+    let [Some(plain), Some(late)] = fits else { return };
+    let delayed = BesideLag { delay: late.values[DELAY], ..none };
+    let [plain, better] =
+        [(&plain, none), (&late, delayed)].map(|(fit, beside)| rate.score(DataPart::Validation, fit, beside));
+    if late.values[DELAY] > REMARKED_DELAY_S.get() && better.rmse < REMARKED_ERROR.get() * plain.rmse {
         out.remark(format!(
-            "{}: a pure delay of {:.0} ms before a lag of {:.0} ms would bring R2 from {:.3} to {:.3}; the model has \
-             none",
+            "{}: a pure delay of {:.0} ms before a lag of {:.0} ms would bring R2 from {:.3} to {:.3}; not told of \
+             the other axes, it is no part of the vehicle",
             AXES[axis],
-            1e3 * late.values[3],
+            1e3 * late.values[DELAY],
             1e3 * late.values[0],
             plain.r2,
             better.r2

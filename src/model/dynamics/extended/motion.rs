@@ -1,7 +1,7 @@
 //! The equations of motion: simulator and diagnosis integrate the same ones.
 
 use super::Extended;
-use super::stages::{ForceInputs, force};
+use super::stages::{ForceInputs, TurnError, force};
 use crate::base::lane::{Real, build};
 use crate::model::attitude::{Quaternion, body_axes, compose, dot, normalized, small_rotation};
 
@@ -26,8 +26,8 @@ pub struct Drive<R> {
     pub rates: [R; 3],
     /// Over the ground, m.
     pub height: R,
-    /// Sum over the axes of |command - response|.
-    pub rate_error: R,
+    /// How far the response is behind.
+    pub turn_error: TurnError<R>,
     /// Time since the battery was full, s.
     pub elapsed: R,
 }
@@ -35,13 +35,13 @@ pub struct Drive<R> {
 /// The equations of motion: the body `h` seconds later, with forces taken at the middle.
 #[inline(always)]
 pub fn moved<R: Real>(s: &RigidBody<R>, p: &Extended<R>, drive: &Drive<R>, h: R) -> RigidBody<R> {
-    let &Drive { command, voltage, rates, height, rate_error, elapsed } = drive;
+    let &Drive { command, voltage, rates, height, turn_error, elapsed } = drive;
     let half = h * R::of(0.5);
     let half_turn = small_rotation(rates, half);
     let middle = compose(s.attitude, half_turn);
     let axes = body_axes(middle);
     let velocity: [R; 3] = build!(|i| dot(axes[i], s.velocity));
-    let inputs = ForceInputs { command, voltage, axes, velocity, rates, height, rate_error, elapsed };
+    let inputs = ForceInputs { command, voltage, axes, velocity, rates, height, turn_error, elapsed };
     let pushed = force(p, &inputs);
     let acceleration: [R; 3] = build!(|i| {
         let world = axes[0][i].mul_add(pushed[0], axes[1][i].mul_add(pushed[1], axes[2][i] * pushed[2]));

@@ -45,7 +45,7 @@ pub fn actuator_response<R: Real>(
     let zero = R::zero();
     let tau = p.tau;
     let mut actuator =
-        Actuator { tau, tau_down: tau[3], inertia: zero, slew: [zero; 3], missing_v: p.full_v - voltage };
+        Actuator { tau, tau_down: tau[3], inertia: [zero; 3], slew: [zero; 3], missing_v: p.full_v - voltage };
     effects::actuator(values, &mut actuator);
     let rates = build!(|i| command[i] * p.compact.max_rate[i]);
     let throttle = throttle(command[3]);
@@ -66,11 +66,11 @@ pub fn actuator_response<R: Real>(
         }
     }
     if oscillates {
-        // A lane without inertia keeps what the others of its block override.
-        let oscillates_here = zero.lt(actuator.inertia);
         for i in 0..3 {
-            let (value, change) =
-                response::second_order(command[i], slope[i], setpoint.command[i], tau[i], actuator.inertia, h);
+            // An axis, or a lane, without inertia keeps what the others override.
+            let inertia = actuator.inertia[i];
+            let oscillates_here = zero.lt(inertia);
+            let (value, change) = response::second_order(command[i], slope[i], setpoint.command[i], tau[i], inertia, h);
             next[i] = R::select(oscillates_here, value, next[i]);
             next_slope[i] = R::select(oscillates_here, change, next_slope[i]);
         }
@@ -97,6 +97,33 @@ pub fn terminal<R: Real>(p: &Extended<R>, open: R, command: R, polarisation: R, 
     (open - battery_load.drop, battery_load.polarisation)
 }
 
+/// How far the rates are behind what is wanted of them.
+#[derive(Clone, Copy, Debug)]
+pub struct TurnError<R> {
+    /// Sum over the axes of |command that has arrived - response|, each as a share of the maximum rate.
+    pub share: R,
+    /// Sum over the axes of |command - response|, rad/s: a rate loop that answers late works on its setpoint at once.
+    pub behind: R,
+}
+
+impl<R: Real> TurnError<R> {
+    /// No error.
+    pub fn none() -> Self {
+        Self { share: R::zero(), behind: R::zero() }
+    }
+
+    /// That of a response to `command`, of which `arrived` is what has arrived.
+    #[inline(always)]
+    pub fn of(p: &Extended<R>, command: [R; 4], arrived: [R; 4], response: [R; 4]) -> Self {
+        let mut out = Self::none();
+        for i in 0..3 {
+            out.share = out.share + (arrived[i] - response[i]).abs();
+            out.behind = (command[i] - response[i]).abs().mul_add(p.compact.max_rate[i], out.behind);
+        }
+        out
+    }
+}
+
 /// What thrust and drag depend on.
 #[derive(Clone, Copy, Debug)]
 pub struct ForceInputs<R> {
@@ -112,8 +139,8 @@ pub struct ForceInputs<R> {
     pub rates: [R; 3],
     /// Over the ground, m.
     pub height: R,
-    /// Sum over the axes of |command - response|.
-    pub rate_error: R,
+    /// How far the response is behind.
+    pub turn_error: TurnError<R>,
     /// Time since the battery was full, s.
     pub elapsed: R,
 }
@@ -124,10 +151,7 @@ impl<R: Real> ForceInputs<R> {
     fn of(s: &State<R>, p: &Extended<R>, memory: &EffectMemory<R>) -> Self {
         let axes = body_axes(s.attitude);
         let velocity = build!(|i| dot(axes[i], s.velocity));
-        let mut rate_error = R::zero();
-        for i in 0..3 {
-            rate_error = rate_error + (memory.line[0][i] - s.command[i]).abs();
-        }
+        let turn_error = TurnError::of(p, memory.line[0], memory.line[0], s.command);
         ForceInputs {
             command: s.command[3],
             voltage: loaded(s, p, memory),
@@ -135,7 +159,7 @@ impl<R: Real> ForceInputs<R> {
             velocity,
             rates: body_rates(p, s.command),
             height: s.position[2],
-            rate_error,
+            turn_error,
             elapsed: elapsed(p, s.voltage),
         }
     }
@@ -154,7 +178,8 @@ pub fn force<R: Real>(p: &Extended<R>, at: &ForceInputs<R>) -> [R; 3] {
     let values = &p.values;
     let half = R::of(0.5);
     let middle_v = (p.full_v + p.empty_v) * half;
-    let mut input = ThrustInput { command: at.command, voltage: at.voltage, middle_v };
+    let behind = at.turn_error.behind;
+    let mut input = ThrustInput { command: at.command, voltage: at.voltage, middle_v, behind };
     effects::thrust_input(values, &mut input);
     let mut wind = RelativeWind { axes: at.axes, velocity: at.velocity };
     effects::relative_wind(values, &mut wind);
@@ -164,7 +189,7 @@ pub fn force<R: Real>(p: &Extended<R>, at: &ForceInputs<R>) -> [R; 3] {
         velocity: wind.velocity,
         rates: at.rates,
         height: at.height,
-        rate_error: at.rate_error,
+        rate_error: at.turn_error.share,
         elapsed: at.elapsed,
         specific_thrust: thrust::specific_thrust(&p.compact.thrust, input.command, input.voltage),
         force: each!(wind.velocity, |v| -damping * v),

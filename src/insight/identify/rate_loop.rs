@@ -1,0 +1,166 @@
+//! What a flight controller's rate loop has beside a lag on each axis: a delay and a largest angular acceleration for
+//! all axes, and yaw later by its own, or of second order. A vehicle has them where flight that was not used for
+//! fitting is clearly better predicted with them.
+
+use super::estimate::Estimated;
+use super::rates::{BesideLag, DELAY, INERTIA, LookedFor, RateAxis, SLEW};
+use super::solve::Solution;
+use crate::base::stats::Score;
+use crate::insight::criteria::shown::{REMARKED_DELAY_S, REMARKED_ERROR, REMARKED_R2};
+use crate::insight::prepare::data::{Data, DataPart};
+use crate::model::effects::{ControllerPart, YAW_SLEW_SHARE};
+use rayon::prelude::*;
+
+/// The axes that share what they have; yaw comes from reaction torque.
+const SHARING: [usize; 2] = [0, 1];
+const YAW: usize = 2;
+
+/// Which parts of it are looked for; a limit only beside a delay.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RateLoopForm {
+    pub delay: bool,
+    pub limit: bool,
+    pub yaw: YawForm,
+}
+
+/// What yaw has of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum YawForm {
+    #[default]
+    Nothing,
+    Delay,
+    SecondOrder,
+}
+
+/// A rate loop; what is not looked for has no value.
+#[derive(Clone, Debug, Default)]
+pub struct RateLoop {
+    /// Delay of all axes, s.
+    pub delay_s: Estimated,
+    /// By how much more yaw is delayed, s.
+    pub yaw_extra_s: Estimated,
+    /// T2 of yaw's second order, s2.
+    pub yaw_inertia_s2: Estimated,
+    /// One over the largest angular acceleration of roll and pitch, s2/rad.
+    pub slew_s2_rad: Estimated,
+}
+
+/// The form that predicts: each part has to be told, and to lower the error on the validation part.
+pub fn form(data: &Data, cutoff_hz: f64) -> RateLoopForm {
+    let mut form = RateLoopForm::default();
+    let told = |axis: usize| data.why_not(&format!("{} response", super::AXES[axis])).is_none();
+    if !(0..3).all(told) {
+        return form;
+    }
+    let axes = [0, 1, 2].map(|axis| RateAxis::new(data, axis, cutoff_hz));
+    let Some(plain) = errors(&axes, &RateLoop::default()) else { return form };
+    if plain.iter().all(|error| error.r2 >= REMARKED_R2.get()) {
+        return form;
+    }
+    let mut best = plain.map(|error| error.rmse);
+    let shares = |now: &[f64; 3], best: &[f64; 3], which: &[usize]| {
+        let squares: f64 = which.iter().map(|&axis| (now[axis] / best[axis]).powi(2)).sum();
+        (squares / which.len() as f64).sqrt()
+    };
+    let tried = |wanted: RateLoopForm| {
+        let found = fit(&axes, DataPart::Train, wanted)?;
+        found.told().then(|| errors(&axes, &found))?.map(|errors| errors.map(|error| error.rmse))
+    };
+    for limit in [false, true] {
+        let wanted = RateLoopForm { delay: true, limit, ..form };
+        if let Some(now) = tried(wanted).filter(|now| shares(now, &best, &SHARING) < REMARKED_ERROR.get()) {
+            (best, form) = (now, wanted);
+        }
+        if !form.delay {
+            break;
+        }
+    }
+    let yaw = [YawForm::Delay, YawForm::SecondOrder].map(|yaw| RateLoopForm { yaw, ..form });
+    let yaw = yaw.into_iter().filter_map(|wanted| Some((tried(wanted)?[YAW] / best[YAW], wanted)));
+    let best = yaw.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(share, _)| *share < REMARKED_ERROR.get());
+    best.map_or(form, |(_, wanted)| wanted)
+}
+
+/// Scores of each axis on the validation part, fitted on the training part with this loop.
+fn errors(axes: &[RateAxis; 3], found: &RateLoop) -> Option<[Score; 3]> {
+    let one = |axis: usize| {
+        let beside = found.beside(axis);
+        let fit = axes[axis].fit(DataPart::Train, beside, LookedFor::Nothing)?;
+        Some(axes[axis].score(DataPart::Validation, &fit, beside))
+    };
+    let all: Option<Vec<_>> = (0..3).into_par_iter().map(one).collect();
+    all?.try_into().ok()
+}
+
+/// Fits the parts of `form` to `part` of the flights. None where there is too little flight.
+pub fn fit(axes: &[RateAxis; 3], part: DataPart, form: RateLoopForm) -> Option<RateLoop> {
+    let mut out = RateLoop::default();
+    if form.delay {
+        let look = if form.limit { LookedFor::DelayAndLimit } else { LookedFor::Delay };
+        let one = |axis: usize| axes[axis].fit(part, BesideLag::default(), look);
+        let fits: Option<Vec<Solution>> = SHARING.into_par_iter().map(one).collect();
+        let fits = fits?;
+        out.delay_s = shared(&fits, DELAY);
+        if form.limit {
+            out.slew_s2_rad = shared(&fits, SLEW);
+        }
+    }
+    match form.yaw {
+        YawForm::Nothing => {}
+        YawForm::Delay => {
+            let own = axes[YAW].fit(part, out.beside(YAW), LookedFor::Delay)?;
+            let all = out.delay_s.value.unwrap_or(0.0);
+            out.yaw_extra_s = Estimated::of(&own, DELAY).less(all);
+        }
+        YawForm::SecondOrder => {
+            let own = axes[YAW].fit(part, out.beside(YAW), LookedFor::SecondOrder)?;
+            out.yaw_inertia_s2 = Estimated::of(&own, INERTIA);
+        }
+    }
+    Some(out)
+}
+
+/// Value `i` of both fits by their precision; its interval holds their difference.
+fn shared(fits: &[Solution], i: usize) -> Estimated {
+    if fits.iter().all(|fit| fit.at_bound[i]) {
+        return Estimated::of(&fits[0], i);
+    }
+    let told: Vec<&Solution> = fits.iter().filter(|fit| !fit.at_bound[i]).collect();
+    let weight = |fit: &Solution| fit.half_width(i).max(1e-9).powi(-2);
+    let sum: f64 = told.iter().map(|fit| weight(fit)).sum();
+    let value = told.iter().map(|fit| weight(fit) * fit.values[i]).sum::<f64>() / sum;
+    let apart = told.iter().map(|fit| (fit.values[i] - value).abs()).fold(0.0, f64::max);
+    Estimated::new(value, sum.powf(-0.5).max(apart))
+}
+
+impl RateLoop {
+    /// Whether each part is told by the flight, and a delay one that matters.
+    fn told(&self) -> bool {
+        let delays = [&self.delay_s, &self.yaw_extra_s];
+        self.parts().iter().all(|(_, size)| size.vague().is_none())
+            && delays.iter().filter_map(|delay| delay.value).all(|delay| delay.abs() > REMARKED_DELAY_S.get())
+    }
+
+    /// What this axis has beside its lag.
+    pub fn beside(&self, axis: usize) -> BesideLag {
+        let size = |estimate: &Estimated| estimate.value.unwrap_or(0.0);
+        let (delay, slew) = (size(&self.delay_s), size(&self.slew_s2_rad));
+        if axis == YAW {
+            let delay = (delay + size(&self.yaw_extra_s)).max(0.0);
+            BesideLag { delay, slew: slew / YAW_SLEW_SHARE, inertia: size(&self.yaw_inertia_s2) }
+        } else {
+            BesideLag { delay, slew, inertia: 0.0 }
+        }
+    }
+
+    /// What there is of it.
+    pub fn parts(&self) -> Vec<(ControllerPart, &Estimated)> {
+        let all = [
+            (ControllerPart::Delay, &self.delay_s),
+            (ControllerPart::YawDelay, &self.yaw_extra_s),
+            (ControllerPart::YawInertia, &self.yaw_inertia_s2),
+            (ControllerPart::Slew, &self.slew_s2_rad),
+        ];
+        all.into_iter().filter(|(_, size)| size.value.is_some()).collect()
+    }
+}
