@@ -14,6 +14,9 @@ pub const STALE_S: f64 = 0.05;
 const START_M: f32 = 0.5;
 const REST_M_S: f32 = 0.3;
 const TILT_RAD: f32 = 0.35;
+/// Share of the training's range that may lie beyond either end of it: the vehicle is a little another than the trained
+/// one, and a wrong frame is farther off.
+const OUTSIDE_MARGIN: f32 = 0.1;
 /// Periods outside the training's range before the flight ends: a gust leaves it for one, a wrong frame for all.
 pub const OUTSIDE_STEPS: u32 = 20;
 /// How much farther than its velocity says an estimate may move, m, and how much faster it may be, m/s.
@@ -91,7 +94,8 @@ impl Guard {
 
     /// Whether the policy has seen for too long what it was not trained for.
     pub fn after(&mut self, seen: &[f32; OBSERVATIONS], [low, high]: &[[f32; OBSERVATIONS]; 2]) -> Option<Reason> {
-        let inside = (0..OBSERVATIONS).all(|k| (low[k]..=high[k]).contains(&seen[k]));
+        let margin = |k: usize| OUTSIDE_MARGIN * (high[k] - low[k]);
+        let inside = (0..OBSERVATIONS).all(|k| (low[k] - margin(k)..=high[k] + margin(k)).contains(&seen[k]));
         self.outside = if inside { 0 } else { self.outside + 1 };
         (self.outside > OUTSIDE_STEPS).then_some(Reason::OutsideRange)
     }

@@ -1,5 +1,5 @@
 //! What a flight controller's rate loop has beside a lag on each axis: a delay and a largest angular acceleration for
-//! all axes, and yaw later by its own, or of second order. A vehicle has them where flight that was not used for
+//! all axes, or a second order, and yaw later by its own, or of second order. A vehicle has them where flight that was not used for
 //! fitting is clearly better predicted with them.
 
 use super::estimate::Estimated;
@@ -8,19 +8,41 @@ use super::solve::Solution;
 use crate::base::stats::Score;
 use crate::insight::criteria::shown::{REMARKED_DELAY_S, REMARKED_ERROR, REMARKED_R2};
 use crate::insight::prepare::data::{Data, DataPart};
-use crate::model::effects::{ControllerPart, YAW_SLEW_SHARE};
+use crate::model::effects::{ControllerPart, YAW_SLEW_SHARE, of_controller};
 use rayon::prelude::*;
 
 /// The axes that share what they have; yaw comes from reaction torque.
 const SHARING: [usize; 2] = [0, 1];
 const YAW: usize = 2;
+/// Share of the error that the best start of a fit leaves, from which the fit is not tried.
+const WORTH_A_FIT: f64 = 0.99;
 
-/// Which parts of it are looked for; a limit only beside a delay.
+/// Which parts of it are looked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RateLoopForm {
-    pub delay: bool,
-    pub limit: bool,
+    pub all: AxesForm,
     pub yaw: YawForm,
+}
+
+/// What all axes have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AxesForm {
+    #[default]
+    Nothing,
+    Delay,
+    DelayAndLimit,
+    SecondOrder,
+}
+
+impl AxesForm {
+    fn look(self) -> LookedFor {
+        match self {
+            AxesForm::Nothing => LookedFor::Nothing,
+            AxesForm::Delay => LookedFor::Delay,
+            AxesForm::DelayAndLimit => LookedFor::DelayAndLimit,
+            AxesForm::SecondOrder => LookedFor::SecondOrder,
+        }
+    }
 }
 
 /// What yaw has of its own.
@@ -39,7 +61,9 @@ pub struct RateLoop {
     pub delay_s: Estimated,
     /// By how much more yaw is delayed, s.
     pub yaw_extra_s: Estimated,
-    /// T2 of yaw's second order, s2.
+    /// T2 of the second order of all axes, s2.
+    pub inertia_s2: Estimated,
+    /// What yaw has of it beyond that, s2.
     pub yaw_inertia_s2: Estimated,
     /// One over the largest angular acceleration of roll and pitch, s2/rad.
     pub slew_s2_rad: Estimated,
@@ -57,6 +81,11 @@ pub fn form(data: &Data, cutoff_hz: f64) -> RateLoopForm {
     if plain.iter().all(|error| error.r2 >= REMARKED_R2.get()) {
         return form;
     }
+    let fits = [0, 1, 2].map(|axis| axes[axis].fit(DataPart::Train, BesideLag::default(), LookedFor::Nothing));
+    let promising = |axis: &usize, look: LookedFor| {
+        let promise = fits[*axis].as_ref().and_then(|plain| axes[*axis].promise(DataPart::Train, plain, look));
+        promise.is_some_and(|share| share < WORTH_A_FIT)
+    };
     let mut best = plain.map(|error| error.rmse);
     let shares = |now: &[f64; 3], best: &[f64; 3], which: &[usize]| {
         let squares: f64 = which.iter().map(|&axis| (now[axis] / best[axis]).powi(2)).sum();
@@ -66,17 +95,21 @@ pub fn form(data: &Data, cutoff_hz: f64) -> RateLoopForm {
         let found = fit(&axes, DataPart::Train, wanted)?;
         found.told().then(|| errors(&axes, &found))?.map(|errors| errors.map(|error| error.rmse))
     };
-    for limit in [false, true] {
-        let wanted = RateLoopForm { delay: true, limit, ..form };
+    // The more numbers a form has, the later it is tried: each has to be clearly better than those before.
+    for all in [AxesForm::Delay, AxesForm::SecondOrder, AxesForm::DelayAndLimit] {
+        let wanted = RateLoopForm { all, ..form };
+        if !SHARING.par_iter().any(|axis| promising(axis, all.look())) {
+            continue;
+        }
         if let Some(now) = tried(wanted).filter(|now| shares(now, &best, &SHARING) < REMARKED_ERROR.get()) {
             (best, form) = (now, wanted);
         }
-        if !form.delay {
-            break;
-        }
     }
-    let yaw = [YawForm::Delay, YawForm::SecondOrder].map(|yaw| RateLoopForm { yaw, ..form });
-    let yaw = yaw.into_iter().filter_map(|wanted| Some((tried(wanted)?[YAW] / best[YAW], wanted)));
+    let yaw = [(YawForm::Delay, LookedFor::Delay), (YawForm::SecondOrder, LookedFor::SecondOrder)];
+    let yaw = yaw.into_iter().filter(|(_, look)| form.all != AxesForm::Nothing || promising(&YAW, *look));
+    let yaw = yaw
+        .map(|(yaw, _)| RateLoopForm { yaw, ..form })
+        .filter_map(|wanted| Some((tried(wanted)?[YAW] / best[YAW], wanted)));
     let best = yaw.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(share, _)| *share < REMARKED_ERROR.get());
     best.map_or(form, |(_, wanted)| wanted)
 }
@@ -95,13 +128,16 @@ fn errors(axes: &[RateAxis; 3], found: &RateLoop) -> Option<[Score; 3]> {
 /// Fits the parts of `form` to `part` of the flights. None where there is too little flight.
 pub fn fit(axes: &[RateAxis; 3], part: DataPart, form: RateLoopForm) -> Option<RateLoop> {
     let mut out = RateLoop::default();
-    if form.delay {
-        let look = if form.limit { LookedFor::DelayAndLimit } else { LookedFor::Delay };
+    let look = form.all.look();
+    if look != LookedFor::Nothing {
         let one = |axis: usize| axes[axis].fit(part, BesideLag::default(), look);
         let fits: Option<Vec<Solution>> = SHARING.into_par_iter().map(one).collect();
         let fits = fits?;
-        out.delay_s = shared(&fits, DELAY);
-        if form.limit {
+        match form.all {
+            AxesForm::SecondOrder => out.inertia_s2 = shared(&fits, INERTIA),
+            _ => out.delay_s = shared(&fits, DELAY),
+        }
+        if form.all == AxesForm::DelayAndLimit {
             out.slew_s2_rad = shared(&fits, SLEW);
         }
     }
@@ -114,7 +150,7 @@ pub fn fit(axes: &[RateAxis; 3], part: DataPart, form: RateLoopForm) -> Option<R
         }
         YawForm::SecondOrder => {
             let own = axes[YAW].fit(part, out.beside(YAW), LookedFor::SecondOrder)?;
-            out.yaw_inertia_s2 = Estimated::of(&own, INERTIA);
+            out.yaw_inertia_s2 = Estimated::of(&own, INERTIA).less(out.inertia_s2.value.unwrap_or(0.0));
         }
     }
     Some(out)
@@ -137,19 +173,23 @@ impl RateLoop {
     /// Whether each part is told by the flight, and a delay one that matters.
     fn told(&self) -> bool {
         let delays = [&self.delay_s, &self.yaw_extra_s];
-        self.parts().iter().all(|(_, size)| size.vague().is_none())
+        let possible = |part: ControllerPart, size: &Estimated| {
+            let bounds = of_controller(part).map(|card| &card.parameters[0]);
+            bounds.zip(size.value).is_some_and(|(p, value)| (p.low..=p.high).contains(&value))
+        };
+        self.parts().iter().all(|(part, size)| size.vague().is_none() && possible(*part, size))
             && delays.iter().filter_map(|delay| delay.value).all(|delay| delay.abs() > REMARKED_DELAY_S.get())
     }
 
     /// What this axis has beside its lag.
     pub fn beside(&self, axis: usize) -> BesideLag {
         let size = |estimate: &Estimated| estimate.value.unwrap_or(0.0);
-        let (delay, slew) = (size(&self.delay_s), size(&self.slew_s2_rad));
+        let (delay, slew, inertia) = (size(&self.delay_s), size(&self.slew_s2_rad), size(&self.inertia_s2));
         if axis == YAW {
             let delay = (delay + size(&self.yaw_extra_s)).max(0.0);
-            BesideLag { delay, slew: slew / YAW_SLEW_SHARE, inertia: size(&self.yaw_inertia_s2) }
+            BesideLag { delay, slew: slew / YAW_SLEW_SHARE, inertia: inertia + size(&self.yaw_inertia_s2) }
         } else {
-            BesideLag { delay, slew, inertia: 0.0 }
+            BesideLag { delay, slew, inertia }
         }
     }
 
@@ -158,6 +198,7 @@ impl RateLoop {
         let all = [
             (ControllerPart::Delay, &self.delay_s),
             (ControllerPart::YawDelay, &self.yaw_extra_s),
+            (ControllerPart::Inertia, &self.inertia_s2),
             (ControllerPart::YawInertia, &self.yaw_inertia_s2),
             (ControllerPart::Slew, &self.slew_s2_rad),
         ];

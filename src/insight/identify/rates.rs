@@ -2,7 +2,7 @@
 //! has beside that.
 
 use super::solve::{Solution, Unknown, solve};
-use crate::base::stats::{Score, mean};
+use crate::base::stats::{Score, correlation, mean};
 use crate::insight::estimate::range::{RATE_GAIN, TIME_CONSTANT_S};
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::insight::prepare::lag::Following;
@@ -100,8 +100,7 @@ impl<'a> RateAxis<'a> {
             let response = Data::pick(&self.response(beside.with(look, x).following(x)), &chosen);
             vec![response.iter().zip(&measured).map(|(r, m)| x[GAIN] * r + x[OFFSET] - m).collect::<Vec<f64>>()]
         };
-        let cost = |x: &Vec<f64>| mean(&residuals(x)[0].iter().map(|r| r * r).collect::<Vec<_>>());
-        let start = starts(look).into_iter().map(|x| (cost(&x), x)).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+        let (_, start) = self.start(&chosen, &measured, beside, look)?;
         let tau =
             Unknown { start: start[0], low: TIME_CONSTANT_S[0], high: TIME_CONSTANT_S[1], step: 2e-5, linear: false };
         let limited = beside.slew > 0.0 || look == LookedFor::DelayAndLimit;
@@ -119,6 +118,25 @@ impl<'a> RateAxis<'a> {
         solve(&unknowns, &blocks, &residuals)
     }
 
+    /// Where to start from, and the mean square that is left there.
+    fn start(&self, chosen: &Chosen, measured: &[f64], beside: BesideLag, look: LookedFor) -> Option<(f64, Vec<f64>)> {
+        let left = |x: &Vec<f64>| {
+            let response = Data::pick(&self.response(beside.with(look, x).following(x)), chosen);
+            // Gain and offset are those of the line through both.
+            mean_square(measured) * (1.0 - correlation(measured, &response).powi(2))
+        };
+        starts(look).into_iter().map(|x| (left(&x), x)).min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The error that is left on `part` by the best of the starts of a fit, as a share of what `plain` leaves: whether
+    /// a fit is worth its time.
+    pub fn promise(&self, part: DataPart, plain: &Solution, look: LookedFor) -> Option<f64> {
+        let chosen = self.choose(part);
+        let measured = Data::pick(&self.measured, &chosen);
+        let (left, _) = self.start(&chosen, &measured, BesideLag::default(), look)?;
+        Some((left.sqrt() / self.score(part, plain, BesideLag::default()).rmse).max(0.0))
+    }
+
     /// How well a fit predicts `part`, in rad/s.
     pub fn score(&self, part: DataPart, fit: &Solution, beside: BesideLag) -> Score {
         let chosen = self.choose(part);
@@ -126,6 +144,12 @@ impl<'a> RateAxis<'a> {
         let predicted: Vec<f64> = predicted.iter().map(|r| fit.values[GAIN] * r + fit.values[OFFSET]).collect();
         Score::of(&Data::pick(&self.measured, &chosen), &predicted)
     }
+}
+
+/// About the mean.
+fn mean_square(x: &[f64]) -> f64 {
+    let middle = mean(x);
+    mean(&x.iter().map(|x| (x - middle).powi(2)).collect::<Vec<_>>())
 }
 
 /// Values to start from.

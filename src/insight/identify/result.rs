@@ -217,6 +217,7 @@ impl Identification {
             rows.push(match part {
                 ControllerPart::Delay => ("delay of the rates".into(), size.times(1e3), 1, "ms"),
                 ControllerPart::YawDelay => ("delay of yaw beyond that".into(), size.times(1e3), 1, "ms"),
+                ControllerPart::Inertia => ("natural frequency of the rates".into(), size.inverse().root(), 1, "rad/s"),
                 ControllerPart::YawInertia => ("natural frequency of yaw".into(), size.inverse().root(), 1, "rad/s"),
                 ControllerPart::Slew => ("angular acceleration, at most".into(), size.inverse(), 0, "rad/s2"),
                 ControllerPart::Room => ("throttle kept free for turns".into(), size.clone(), 3, "s/rad"),

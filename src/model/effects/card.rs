@@ -180,6 +180,8 @@ pub enum ControllerPart {
     Delay,
     /// By how much more yaw is delayed, s.
     YawDelay,
+    /// T2 of the second order of all rates, s2.
+    Inertia,
     /// T2 of yaw's second order, s2.
     YawInertia,
     /// One over the largest angular acceleration of roll and pitch, s2/rad.

@@ -1,6 +1,8 @@
 //! Second-order response of the body rates: T2 w'' + tau w' + w = w_sp, with T2 = 1 / wn^2 and tau = 2 zeta / wn.
 
-use super::{Actuator, Card, Effect, EffectKind, EffectParameter, Quantity, RateResponse, ResidualChannel};
+use super::{
+    Actuator, Card, ControllerPart, Effect, EffectKind, EffectParameter, Quantity, RateResponse, ResidualChannel,
+};
 use crate::base::lane::Real;
 
 pub struct RateSecondOrder;
@@ -16,6 +18,7 @@ impl Effect for RateSecondOrder {
         writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
         response: RateResponse::SecondOrder,
+        controller: Some(ControllerPart::Inertia),
         signature: "the gyro rings after steps, at one frequency",
         rivals: &["rate_delay", "rate_slew_limit"],
         manoeuvre: (

@@ -61,7 +61,7 @@ pub fn rate(
 /// Says where a pure delay would predict a rate better than the lag alone.
 fn delay(out: &mut Identification, data: &Data, axis: usize, all: &Fits, options: &IdentifyOptions) {
     let response = &out.response[axis];
-    if all.rate_loop.delay_s.value.is_some() || response.r2.is_none_or(|r2| r2 >= REMARKED_R2.get()) {
+    if !all.rate_loop.parts().is_empty() || response.r2.is_none_or(|r2| r2 >= REMARKED_R2.get()) {
         return;
     }
     let rate = RateAxis::new(data, axis, options.rate_cutoff_hz);
