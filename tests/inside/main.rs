@@ -24,6 +24,7 @@ mod policy_file;
 mod python;
 mod quality;
 mod race;
+mod rate_loop;
 mod reference;
 mod rehearse;
 mod replay;

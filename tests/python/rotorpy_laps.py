@@ -94,7 +94,9 @@ def times(passes, gates):
 
 
 def own(flying, tensors, wanted):
-    """In the file's own equations."""
+    """In the file's own equations; nothing where these are not all that the training had."""
+    if not flying["model"]["complete"]:
+        return [], "effects beyond the equations of the file"
     start, model = flying["start"], flying["model"]
     now = [np.array(start["position_m"]), np.zeros(3), turn([0, 0, start["heading_rad"]]),
            np.array(start["command"], float), start["voltage_v"]]
@@ -174,10 +176,11 @@ def main():
             flown, ended = in_rotorpy(metadata["flying"], tensors, args.laps, extra, log)
             if args.log:
                 keep(args.log, path.parent.name, metadata["flying"], log)
-            both = min(len(forecast), len(flown))
-            mean = [np.mean(x[:both]) if both else np.nan for x in (forecast, flown)]
-            rows.writerow([path.parent.name, " ".join(extra) or "nothing", *(f"{x:.3f}" for x in mean),
-                           f"{mean[1] / mean[0]:.3f}", len(flown), ended, " ".join(f"{x:.3f}" for x in flown)])
+            both = min(len(forecast), len(flown)) or None
+            mean = [f"{np.mean(x[:both]):.3f}" if x else "" for x in (forecast, flown)]
+            share = f"{float(mean[1]) / float(mean[0]):.3f}" if both else ""
+            rows.writerow([path.parent.name, " ".join(extra) or "nothing", *mean, share, len(flown), ended,
+                           " ".join(f"{x:.3f}" for x in flown)])
             file.flush()
 
 

@@ -1,6 +1,6 @@
 //! What a flight controller's rate loop has beside a lag on each axis: a delay and a largest angular acceleration for
-//! all axes, or a second order, and yaw later by its own, or of second order. A vehicle has them where flight that was not used for
-//! fitting is clearly better predicted with them.
+//! all axes, or a second order, and yaw later by its own, or of second order by its own. A vehicle has them where
+//! flight that was not used for fitting is clearly better predicted with them.
 
 use super::estimate::Estimated;
 use super::rates::{BesideLag, DELAY, INERTIA, LookedFor, RateAxis, SLEW};

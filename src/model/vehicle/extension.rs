@@ -135,3 +135,23 @@ impl Check for Extension {
         Invalid::unless(positive, "covariance", "another matrix", "a positive definite matrix", "")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_size_that_is_put_takes_the_place_of_its_former_self() {
+        let [a, b, c] = [MODEL[0], MODEL[1], MODEL[2]].map(|card| (card.id, card.parameters[0].name));
+        let typical = |i: usize| MODEL[i].parameters[0].typical;
+        let mut out = Extension::default();
+        out.put(a.0, a.1, typical(0)[0], 1e-3);
+        out.put(b.0, b.1, typical(1)[0], 0.02);
+        out.put(a.0, a.1, typical(0)[1], 2e-3);
+        out.put(c.0, c.1, typical(2)[0], 0.0);
+        assert!(out.check().is_ok(), "{out:?}");
+        assert_eq!((out.sizes[a.0][a.1], out.sizes[c.0][c.1]), (typical(0)[1], typical(2)[0]));
+        assert_eq!(out.uncertain, [b, a].map(|(effect, name)| format!("{effect}.{name}")));
+        assert_eq!(out.covariance, [[4e-4, 0.0], [0.0, 4e-6]]);
+    }
+}
