@@ -140,8 +140,14 @@ impl Fits {
         told.chain(self.room.iter().filter(|_| kept.thrust).map(|k| (ControllerPart::Room, k))).collect()
     }
 
-    /// Puts that into the effects of a vehicle, each to be drawn in training as far as its interval reaches.
+    /// Puts that into the effects of a vehicle in the place of its own, each to be drawn in training as far as its
+    /// interval reaches.
     fn extend(&self, extension: &mut Extension, kept: &Kept) {
+        if kept.lag[0] && kept.lag[1] {
+            // The lag was fitted without them.
+            let own = ControllerPart::OF_RATES.into_iter().filter_map(effects::of_controller);
+            own.for_each(|card| extension.remove(card.id));
+        }
         for (part, size) in self.controller(kept) {
             let (Some(value), Some([low, high])) = (size.value, size.interval()) else { continue };
             if let Some(card) = effects::of_controller(part) {

@@ -134,7 +134,7 @@ impl<'a> RateAxis<'a> {
         let chosen = self.choose(part);
         let measured = Data::pick(&self.measured, &chosen);
         let (left, _) = self.start(&chosen, &measured, BesideLag::default(), look)?;
-        Some((left.sqrt() / self.score(part, plain, BesideLag::default()).rmse).max(0.0))
+        Some(left.sqrt() / self.score(part, plain, BesideLag::default()).rmse)
     }
 
     /// How well a fit predicts `part`, in rad/s.

@@ -190,6 +190,11 @@ pub enum ControllerPart {
     Room,
 }
 
+impl ControllerPart {
+    /// Those of how the rates follow.
+    pub const OF_RATES: [Self; 5] = [Self::Delay, Self::YawDelay, Self::Inertia, Self::YawInertia, Self::Slew];
+}
+
 /// An effect that has the same mean as another.
 #[derive(Clone, Copy, Debug)]
 pub struct Twin {

@@ -45,18 +45,29 @@ impl Extension {
     pub fn put(&mut self, effect: &str, parameter: &str, size: f64, deviation: f64) {
         self.sizes.entry(effect.into()).or_default().insert(parameter.into(), size);
         let key = format!("{effect}.{parameter}");
-        if let Some(at) = self.uncertain.iter().position(|known| *known == key) {
-            self.uncertain.remove(at);
-            self.covariance.remove(at);
-            for row in &mut self.covariance {
-                row.remove(at);
-            }
-        }
+        self.make_certain(|known| *known == key);
         if deviation > 0.0 {
             self.uncertain.push(key);
             self.covariance.iter_mut().for_each(|row| row.push(0.0));
             let alone = (1..self.uncertain.len()).map(|_| 0.0).chain([deviation * deviation]);
             self.covariance.push(alone.collect());
+        }
+    }
+
+    /// Takes an effect away.
+    pub fn remove(&mut self, effect: &str) {
+        self.sizes.remove(effect);
+        self.make_certain(|known| known.split_once('.').is_some_and(|(of, _)| of == effect));
+    }
+
+    /// Forgets how uncertain these parameters are.
+    fn make_certain(&mut self, which: impl Fn(&String) -> bool) {
+        while let Some(at) = self.uncertain.iter().position(&which) {
+            self.uncertain.remove(at);
+            self.covariance.remove(at);
+            for row in &mut self.covariance {
+                row.remove(at);
+            }
         }
     }
 
@@ -141,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_size_that_is_put_takes_the_place_of_its_former_self() {
+    fn sizes_are_put_in_the_place_of_their_former_selves_and_taken_away() {
         let [a, b, c] = [MODEL[0], MODEL[1], MODEL[2]].map(|card| (card.id, card.parameters[0].name));
         let typical = |i: usize| MODEL[i].parameters[0].typical;
         let mut out = Extension::default();
@@ -153,5 +164,8 @@ mod tests {
         assert_eq!((out.sizes[a.0][a.1], out.sizes[c.0][c.1]), (typical(0)[1], typical(2)[0]));
         assert_eq!(out.uncertain, [b, a].map(|(effect, name)| format!("{effect}.{name}")));
         assert_eq!(out.covariance, [[4e-4, 0.0], [0.0, 4e-6]]);
+        out.remove(b.0);
+        assert_eq!((out.covariance.clone(), out.sizes.len()), (vec![vec![4e-6]], 2));
+        assert!(out.check().is_ok(), "{out:?}");
     }
 }
