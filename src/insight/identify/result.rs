@@ -213,12 +213,15 @@ impl Identification {
         if self.thrust.rotor_lag_s.value.is_some() {
             rows.push(("lag of the rotors".into(), self.thrust.rotor_lag_s.times(1e3), 1, "ms"));
         }
+        let of_all = self.controller.get(&ControllerPart::Inertia).and_then(|size| size.value).unwrap_or(0.0);
         for (part, size) in &self.controller {
             rows.push(match part {
                 ControllerPart::Delay => ("delay of the rates".into(), size.times(1e3), 1, "ms"),
                 ControllerPart::YawDelay => ("delay of yaw beyond that".into(), size.times(1e3), 1, "ms"),
                 ControllerPart::Inertia => ("natural frequency of the rates".into(), size.inverse().root(), 1, "rad/s"),
-                ControllerPart::YawInertia => ("natural frequency of yaw".into(), size.inverse().root(), 1, "rad/s"),
+                ControllerPart::YawInertia => {
+                    ("natural frequency of yaw".into(), size.less(-of_all).inverse().root(), 1, "rad/s")
+                }
                 ControllerPart::Slew => ("angular acceleration, at most".into(), size.inverse(), 0, "rad/s2"),
                 ControllerPart::Room => ("throttle kept free for turns".into(), size.clone(), 3, "s/rad"),
             });
