@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """Flies policies, from their files alone, in a simulator that nobody here wrote: rotorpy's multirotor.
 
-    python tests/python/rotorpy_laps.py OUT.csv POLICY.safetensors... [--laps 10] [--with rotor_drag,wind] [--log DIR]
+    python tests/python/rotorpy_laps.py OUT.csv POLICY.safetensors... [--laps 10] [--log DIR]
 
 Mass, full thrust, drag and start are the policy's vehicle's, as its file says. Inertia (of an even ellipsoid), four
-rotors with a lag, and the rate loop (`cmd_ctbr`) are rotorpy's, in steps of a millisecond; `--with` adds what the file
-does not have. A line of OUT.csv is a policy: its laps in the file's own equations beside those in rotorpy. `--log`
+rotors with a lag, and the rate loop (`cmd_ctbr`) are rotorpy's, in steps of a millisecond. A line of OUT.csv is a policy: its laps in the file's own equations beside those in rotorpy. `--log`
 keeps the flights as CSV, with sensor noise, and what `racer identify --mapping DIR/rotorpy.toml DIR/*.csv` needs.
 """
 
@@ -21,9 +20,6 @@ from scipy.spatial.transform import Rotation
 STEP_S = 0.001
 ARM_M, TORQUE_M, LAG_S, RATE_GAIN = 0.08, 0.016, 0.016, 30.0
 FASTEST = 3000.0
-# Sizes of rotorpy's own AscTec Hummingbird; wind along x, m/s.
-EXTRA = {"rotor_drag": {"k_d": 1.19e-4, "k_z": 2.32e-4}, "lift": {"k_h": 3.39e-3}, "wind": {}}
-WIND_M_S = 3.0
 
 
 COLUMNS = ("t wx_sp wy_sp wz_sp throttle wx wy wz ax ay az x y z qw qx qy qz vx vy vz volts m1 m2 m3 m4").split()
@@ -54,7 +50,7 @@ max_rate_deg_s = {rates}
 """
 
 
-def vehicle(flying, extra):
+def vehicle(flying):
     """rotorpy's parameters for the vehicle of a policy."""
     model, setpoint = flying["model"]["parameters"], flying["setpoint"]
     mass = setpoint["weight_n"] / model["gravity_m_s2"]
@@ -63,13 +59,10 @@ def vehicle(flying, extra):
     drag = np.array(model["drag_1_m"]) * mass
     inertia = mass * np.array([0.11**2 + 0.045**2, 0.11**2 + 0.045**2, 2 * 0.11**2]) / 5
     corners = {f"r{i}": ARM_M * np.array([x, y, 0.0]) for i, (x, y) in enumerate([(1, 1), (1, -1), (-1, -1), (-1, 1)])}
-    out = {"mass": mass, "Ixx": inertia[0], "Iyy": inertia[1], "Izz": inertia[2], "Ixy": 0.0, "Ixz": 0.0, "Iyz": 0.0,
-           "c_Dx": drag[0], "c_Dy": drag[1], "c_Dz": drag[2], "num_rotors": 4, "rotor_pos": corners,
-           "rotor_directions": np.array([1, -1, 1, -1]), "rotor_speed_min": 0.0, "rotor_speed_max": FASTEST,
-           "k_eta": thrust, "k_m": TORQUE_M * thrust, "tau_m": LAG_S, "k_w": RATE_GAIN}
-    for name in extra:
-        out |= EXTRA[name]
-    return out
+    return {"mass": mass, "Ixx": inertia[0], "Iyy": inertia[1], "Izz": inertia[2], "Ixy": 0.0, "Ixz": 0.0, "Iyz": 0.0,
+            "c_Dx": drag[0], "c_Dy": drag[1], "c_Dz": drag[2], "num_rotors": 4, "rotor_pos": corners,
+            "rotor_directions": np.array([1, -1, 1, -1]), "rotor_speed_min": 0.0, "rotor_speed_max": FASTEST,
+            "k_eta": thrust, "k_m": TORQUE_M * thrust, "tau_m": LAG_S, "k_w": RATE_GAIN}
 
 
 def laps(flying, tensors, wanted, move, state):
@@ -108,14 +101,13 @@ def own(flying, tensors, wanted):
     return laps(flying, tensors, wanted, move, lambda: (now[0], now[1], now[2], now[3][:3] * full, now[4]))
 
 
-def in_rotorpy(flying, tensors, wanted, extra, log):
+def in_rotorpy(flying, tensors, wanted, log):
     """In rotorpy; every other step is added to `log`."""
     start, model = flying["start"], flying["model"]["parameters"]
     w, x, y, z = turn([0, 0, start["heading_rad"]])
-    wind = np.array([WIND_M_S if "wind" in extra else 0.0, 0.0, 0.0])
     now = {"x": np.array(start["position_m"], float), "v": np.zeros(3), "q": np.array([x, y, z, w]), "w": np.zeros(3),
-           "wind": wind, "rotor_speeds": np.full(4, 1.0)}
-    craft = Multirotor(vehicle(flying, extra), control_abstraction="cmd_ctbr")
+           "wind": np.zeros(3), "rotor_speeds": np.full(4, 1.0)}
+    craft = Multirotor(vehicle(flying), control_abstraction="cmd_ctbr")
     box, noise = {"state": now, "voltage": start["voltage_v"]}, np.random.default_rng(1)
 
     def note(s, setpoint, control):
@@ -132,7 +124,6 @@ def in_rotorpy(flying, tensors, wanted, extra, log):
             if i % 2 == 0:
                 note(before, setpoint, control)
             box["state"] = craft.step(before, control, STEP_S)
-            box["state"]["wind"] = wind
             if box["state"]["x"][2] < start["position_m"][2]:
                 # The pad carries it.
                 box["state"] |= {"x": before["x"], "v": np.zeros(3), "q": before["q"], "w": np.zeros(3)}
@@ -160,27 +151,24 @@ def main():
     parser.add_argument("out", type=Path)
     parser.add_argument("policies", type=Path, nargs="+")
     parser.add_argument("--laps", type=int, default=10)
-    parser.add_argument("--with", dest="extra", default="")
     parser.add_argument("--log", type=Path)
     args = parser.parse_args()
-    extra = [name for name in args.extra.split(",") if name]
     new = not args.out.exists()
     with open(args.out, "a", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
         if new:
-            rows.writerow(["policy", "with", "forecast_s", "flown_s", "share", "laps", "ended", "flown_laps_s"])
+            rows.writerow(["policy", "forecast_s", "flown_s", "share", "laps", "ended", "flown_laps_s"])
         for path in args.policies:
             metadata, tensors = read(path)
             forecast, _ = own(metadata["flying"], tensors, args.laps)
             log = []
-            flown, ended = in_rotorpy(metadata["flying"], tensors, args.laps, extra, log)
+            flown, ended = in_rotorpy(metadata["flying"], tensors, args.laps, log)
             if args.log:
                 keep(args.log, path.parent.name, metadata["flying"], log)
             both = min(len(forecast), len(flown)) or None
             mean = [f"{np.mean(x[:both]):.3f}" if x else "" for x in (forecast, flown)]
             share = f"{float(mean[1]) / float(mean[0]):.3f}" if both else ""
-            rows.writerow([path.parent.name, " ".join(extra) or "nothing", *mean, share, len(flown), ended,
-                           " ".join(f"{x:.3f}" for x in flown)])
+            rows.writerow([path.parent.name, *mean, share, len(flown), ended, " ".join(f"{x:.3f}" for x in flown)])
             file.flush()
 
 
