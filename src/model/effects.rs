@@ -17,6 +17,7 @@ pub use card::{
     Twin,
 };
 pub use dependence::Quantities;
+pub use mixer_room::with_room;
 pub use quantity::Quantity;
 pub use rate_slew_limit::YAW_SLEW_SHARE;
 pub use stages::{

@@ -10,7 +10,7 @@ use super::{AXES, IdentifyOptions, battery, bias, room};
 use crate::base::stats::NORMAL_95;
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::dynamics::drag::{ellipsoid, semi_axes};
-use crate::model::effects::{self, ControllerPart, EffectParameter};
+use crate::model::effects::{self, ControllerPart};
 use crate::model::vehicle::extension::Extension;
 use crate::model::vehicle::identified::SensorOffsets;
 use crate::model::vehicle::{MaxRates, TimeConstants, Vehicle};
@@ -151,8 +151,7 @@ impl Fits {
         for (part, size) in self.controller(kept) {
             let (Some(value), Some([low, high])) = (size.value, size.interval()) else { continue };
             if let Some(card) = effects::of_controller(part) {
-                let EffectParameter { name, low: least, high: most, .. } = &card.parameters[0];
-                extension.put(card.id, name, value.clamp(*least, *most), (high - low) / (2.0 * NORMAL_95));
+                extension.put(card.id, card.parameters[0].name, value, (high - low) / (2.0 * NORMAL_95));
             }
         }
     }

@@ -20,38 +20,10 @@ const WORTH_A_FIT: f64 = 0.99;
 /// Which parts of it are looked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RateLoopForm {
-    pub all: AxesForm,
-    pub yaw: YawForm,
-}
-
-/// What all axes have.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum AxesForm {
-    #[default]
-    Nothing,
-    Delay,
-    DelayAndLimit,
-    SecondOrder,
-}
-
-impl AxesForm {
-    fn look(self) -> LookedFor {
-        match self {
-            AxesForm::Nothing => LookedFor::Nothing,
-            AxesForm::Delay => LookedFor::Delay,
-            AxesForm::DelayAndLimit => LookedFor::DelayAndLimit,
-            AxesForm::SecondOrder => LookedFor::SecondOrder,
-        }
-    }
-}
-
-/// What yaw has of its own.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum YawForm {
-    #[default]
-    Nothing,
-    Delay,
-    SecondOrder,
+    /// Of all axes.
+    pub all: LookedFor,
+    /// Of yaw alone: a delay or a second order.
+    pub yaw: LookedFor,
 }
 
 /// A rate loop; what is not looked for has no value.
@@ -78,82 +50,79 @@ pub fn form(data: &Data, cutoff_hz: f64) -> RateLoopForm {
     }
     let axes = [0, 1, 2].map(|axis| RateAxis::new(data, axis, cutoff_hz));
     let Some(plain) = errors(&axes, &RateLoop::default()) else { return form };
-    if plain.iter().all(|error| error.r2 >= REMARKED_R2.get()) {
+    if plain.iter().all(|(_, error)| error.r2 >= REMARKED_R2.get()) {
         return form;
     }
-    let fits = [0, 1, 2].map(|axis| axes[axis].fit(DataPart::Train, BesideLag::default(), LookedFor::Nothing));
     let promising = |axis: &usize, look: LookedFor| {
-        let promise = fits[*axis].as_ref().and_then(|plain| axes[*axis].promise(DataPart::Train, plain, look));
+        let promise = axes[*axis].promise(DataPart::Train, &plain[*axis].0, look);
         promise.is_some_and(|share| share < WORTH_A_FIT)
     };
-    let mut best = plain.map(|error| error.rmse);
+    let mut best = plain.each_ref().map(|(_, error)| error.rmse);
     let shares = |now: &[f64; 3], best: &[f64; 3], which: &[usize]| {
         let squares: f64 = which.iter().map(|&axis| (now[axis] / best[axis]).powi(2)).sum();
         (squares / which.len() as f64).sqrt()
     };
     let tried = |wanted: RateLoopForm| {
         let found = fit(&axes, DataPart::Train, wanted)?;
-        found.told().then(|| errors(&axes, &found))?.map(|errors| errors.map(|error| error.rmse))
+        Some(errors(&axes, &found)?.map(|(_, error)| error.rmse))
     };
     // The more numbers a form has, the later it is tried: each has to be clearly better than those before.
-    for all in [AxesForm::Delay, AxesForm::SecondOrder, AxesForm::DelayAndLimit] {
+    for all in [LookedFor::Delay, LookedFor::SecondOrder, LookedFor::DelayAndLimit] {
         let wanted = RateLoopForm { all, ..form };
-        if !SHARING.par_iter().any(|axis| promising(axis, all.look())) {
+        if !SHARING.par_iter().any(|axis| promising(axis, all)) {
             continue;
         }
         if let Some(now) = tried(wanted).filter(|now| shares(now, &best, &SHARING) < REMARKED_ERROR.get()) {
             (best, form) = (now, wanted);
         }
     }
-    let yaw = [(YawForm::Delay, LookedFor::Delay), (YawForm::SecondOrder, LookedFor::SecondOrder)];
-    let yaw = yaw.into_iter().filter(|(_, look)| form.all != AxesForm::Nothing || promising(&YAW, *look));
+    let yaw = [LookedFor::Delay, LookedFor::SecondOrder].into_iter();
+    let yaw = yaw.filter(|look| form.all != LookedFor::Nothing || promising(&YAW, *look));
     let yaw = yaw
-        .map(|(yaw, _)| RateLoopForm { yaw, ..form })
+        .map(|yaw| RateLoopForm { yaw, ..form })
         .filter_map(|wanted| Some((tried(wanted)?[YAW] / best[YAW], wanted)));
     let best = yaw.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(share, _)| *share < REMARKED_ERROR.get());
     best.map_or(form, |(_, wanted)| wanted)
 }
 
-/// Scores of each axis on the validation part, fitted on the training part with this loop.
-fn errors(axes: &[RateAxis; 3], found: &RateLoop) -> Option<[Score; 3]> {
+/// Each axis fitted to the training part with this loop, and its score on the validation part.
+fn errors(axes: &[RateAxis; 3], found: &RateLoop) -> Option<[(Solution, Score); 3]> {
     let one = |axis: usize| {
         let beside = found.beside(axis);
         let fit = axes[axis].fit(DataPart::Train, beside, LookedFor::Nothing)?;
-        Some(axes[axis].score(DataPart::Validation, &fit, beside))
+        let score = axes[axis].score(DataPart::Validation, &fit, beside);
+        Some((fit, score))
     };
     let all: Option<Vec<_>> = (0..3).into_par_iter().map(one).collect();
     all?.try_into().ok()
 }
 
-/// Fits the parts of `form` to `part` of the flights. None where there is too little flight.
+/// Fits the parts of `form` to `part` of the flights. None where one of them is not told: a lag is not fitted beside
+/// what no vehicle gets.
 pub fn fit(axes: &[RateAxis; 3], part: DataPart, form: RateLoopForm) -> Option<RateLoop> {
     let mut out = RateLoop::default();
-    let look = form.all.look();
-    if look != LookedFor::Nothing {
-        let one = |axis: usize| axes[axis].fit(part, BesideLag::default(), look);
+    if form.all != LookedFor::Nothing {
+        let one = |axis: usize| axes[axis].fit(part, BesideLag::default(), form.all);
         let fits: Option<Vec<Solution>> = SHARING.into_par_iter().map(one).collect();
         let fits = fits?;
         match form.all {
-            AxesForm::SecondOrder => out.inertia_s2 = shared(&fits, INERTIA),
+            LookedFor::SecondOrder => out.inertia_s2 = shared(&fits, INERTIA),
             _ => out.delay_s = shared(&fits, DELAY),
         }
-        if form.all == AxesForm::DelayAndLimit {
+        if form.all == LookedFor::DelayAndLimit {
             out.slew_s2_rad = shared(&fits, SLEW);
         }
     }
-    match form.yaw {
-        YawForm::Nothing => {}
-        YawForm::Delay => {
-            let own = axes[YAW].fit(part, out.beside(YAW), LookedFor::Delay)?;
-            let all = out.delay_s.value.unwrap_or(0.0);
-            out.yaw_extra_s = Estimated::of(&own, DELAY).less(all);
-        }
-        YawForm::SecondOrder => {
-            let own = axes[YAW].fit(part, out.beside(YAW), LookedFor::SecondOrder)?;
-            out.yaw_inertia_s2 = Estimated::of(&own, INERTIA).less(out.inertia_s2.value.unwrap_or(0.0));
+    if form.yaw != LookedFor::Nothing {
+        let own = axes[YAW].fit(part, out.beside(YAW), form.yaw)?;
+        match form.yaw {
+            LookedFor::SecondOrder => {
+                out.yaw_inertia_s2 = Estimated::of(&own, INERTIA).less(out.inertia_s2.value.unwrap_or(0.0));
+            }
+            _ => out.yaw_extra_s = Estimated::of(&own, DELAY).less(out.delay_s.value.unwrap_or(0.0)),
         }
     }
-    Some(out)
+    out.told().then_some(out)
 }
 
 /// Value `i` of both fits by their precision; its interval holds their difference.

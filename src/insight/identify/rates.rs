@@ -32,8 +32,9 @@ pub struct BesideLag {
 }
 
 /// What of it is to be found; the rest is as given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LookedFor {
+    #[default]
     Nothing,
     Delay,
     DelayAndLimit,

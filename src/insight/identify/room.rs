@@ -10,6 +10,8 @@ use crate::base::stats::NORMAL_95;
 use crate::insight::criteria::shown::REMARKED_ERROR;
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::insight::prepare::lag::Following;
+use crate::model::dynamics::extended::throttle;
+use crate::model::effects::with_room;
 use crate::model::vehicle::identified::RotorChain;
 use std::collections::BTreeMap;
 
@@ -81,8 +83,8 @@ impl Room {
     }
 
     fn residual(&self, i: usize, k: f64) -> f64 {
-        let least = (k * self.behind[i]).min(0.5);
-        self.output[i] - self.line[0] - self.line[1] * self.throttle[i].max(least).min(1.0 - least)
+        let command = with_room(2.0 * self.throttle[i] - 1.0, k, self.behind[i]);
+        self.output[i] - self.line[0] - self.line[1] * throttle(command)
     }
 
     fn squares(&self, k: f64) -> f64 {

@@ -30,8 +30,14 @@ impl Effect for MixerRoom {
 
     #[inline(always)]
     fn thrust_input<R: Real>(k: &[R], input: &mut ThrustInput<R>) {
-        // Of a command from -1 to 1, half the throttle is all the room that can be made.
-        let least = (k[0] * input.behind * R::of(2.0)).min(R::one());
-        input.command = input.command.clamp(least - R::one(), R::one() - least);
+        input.command = with_room(input.command, k[0], input.behind);
     }
+}
+
+/// The command (-1..1) with room made for rates that are so far behind, rad/s; `k` in s/rad.
+#[inline(always)]
+pub fn with_room<R: Real>(command: R, k: R, behind: R) -> R {
+    // Half the throttle is all the room that can be made.
+    let least = (k * behind * R::of(2.0)).min(R::one());
+    command.clamp(least - R::one(), R::one() - least)
 }
