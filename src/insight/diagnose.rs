@@ -13,6 +13,7 @@ pub mod accident;
 pub mod actuator_response;
 pub mod adequacy;
 pub mod against;
+pub mod agreement;
 pub mod bend;
 pub mod bends;
 pub mod candidates;
@@ -36,6 +37,7 @@ pub mod gusts;
 pub mod horizon;
 pub mod impact;
 pub mod judge;
+pub mod keep;
 pub mod kinematics;
 pub mod lost;
 pub mod measured;
@@ -68,7 +70,6 @@ use crate::base::stats::mean;
 use crate::insight::Watch;
 use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
-use crate::model::effects::Role;
 use crate::model::vehicle::Vehicle;
 use channels::NAMES;
 use finding::{Diagnosis, Finding, Residual, Status, Verdict};
@@ -123,10 +124,10 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let Judgement { mut findings, judged, drift, unexplained, small } = findings::find(&fitted, lost, &structure);
     doubt::all(&fitted, &mut findings);
     watch("measuring the gain", 0.9);
-    let (kept, worse) = kept(&problem, &selection, &mut findings);
+    let (kept, worse) = keep::keep(&problem, &selection, &mut findings);
     let kept = &kept;
     let fitted_kept = FittedSelection::new(&problem, kept);
-    as_written(&fitted_kept, &mut findings);
+    keep::as_written(&fitted_kept, &mut findings);
     let driven: Vec<motors::Driven> = problem.records.iter().flat_map(|r| r.driven.clone()).collect();
     one_motor::name(&driven, &mut findings);
     let held = gain::measure(&problem, &selection, kept);
@@ -168,37 +169,6 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         not_extended: extended.as_ref().err().cloned(),
     };
     Diagnosed { diagnosis, vehicle: extended, changes: None, problem, selection }
-}
-
-/// Sizes in the report are those of the extended vehicle. Lost commands are counted, and not fitted.
-fn as_written(kept: &FittedSelection, findings: &mut [Finding]) {
-    let named = findings.iter_mut().filter(|f| f.status != Status::Suspected && !f.has(Role::CommandsLost));
-    for finding in named {
-        let held = kept.selection.added.iter().find(|a| a.card.id == finding.effect);
-        if let Some(added) = held {
-            finding.parameters = shown::parameters(kept, added.card);
-        }
-    }
-}
-
-/// What of the selection is kept: what is only suspected is no part of the extended vehicle, nor what makes unseen
-/// flight worse. With the reason where what is left is worse for all that.
-fn kept(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> (Selection, Option<String>) {
-    loop {
-        let suspected: Vec<&str> =
-            findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
-        let kept = selection.without(problem, &suspected);
-        let Some(worse) = worse::find(&FittedSelection::new(problem, &kept), &selection.base) else {
-            return (kept, None);
-        };
-        let rise = format!("{} {:.0} % worse", worse.channel, 100.0 * worse.by);
-        let blamed = worse.blamed.map(|card| card.id);
-        let finding = findings.iter_mut().find(|f| Some(f.effect) == blamed && f.status != Status::Suspected);
-        let Some(finding) = finding else {
-            return (kept, Some(format!("on flight that was not used for fitting it predicts {rise}")));
-        };
-        finding.suspect(format!("on flight that was not used for fitting it makes {rise}"));
-    }
 }
 
 /// By impact; what is only suspected comes last.

@@ -117,6 +117,7 @@ effects! {
         rate_second_order::RateSecondOrder
         yaw_second_order::YawSecondOrder
         rate_slew_limit::RateSlewLimit
+        yaw_slew_limit::YawSlewLimit
         rate_expo::RateExpo
         response_voltage::ResponseVoltage
         rate_cross_coupling::RateCrossCoupling

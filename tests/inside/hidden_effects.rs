@@ -76,6 +76,11 @@ fn yaw_that_swings_is_found() {
 }
 
 #[test]
+fn yaw_that_is_slow_in_large_steps_is_found() {
+    finds(52, &[("yaw_slew_limit", 25.0)], 0.05);
+}
+
+#[test]
 fn the_battery_is_found() {
     finds(43, &[("voltage_sag", 1.5)], 0.05);
 }

@@ -128,6 +128,9 @@ fn limits_and_curves_of_the_inner_loop() {
     assert!((limited[40].rates.x - 150.0 * 0.02).abs() < 1e-9, "{}", limited[40].rates.x);
     assert!((limited[20].rates.z - 45.0 * 0.01).abs() < 1e-9, "{}", limited[20].rates.z);
 
+    let limited = flown(&world("yaw_slew_limit", 30.0), aloft(0.0), 0.1, &|_| [1.0, 0.0, 1.0, 0.0]);
+    assert!((limited[20].rates.z - 30.0 * 0.01).abs() < 1e-9, "{}", limited[20].rates.z);
+
     let world_of = world("rate_expo", 0.4);
     let wanted = inner::wanted(&aloft(0.0), &world_of, [0.5, 1.0, 0.0, 0.0]);
     assert!((wanted.x / world_of.vehicle.max_rate[0] - (0.6 * 0.5 + 0.4 * 0.125)).abs() < 1e-12);

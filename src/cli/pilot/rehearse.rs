@@ -14,7 +14,7 @@ use crate::flight::pilot::{Pilot, PilotLimits};
 use crate::flight::rehearse::airframe::Airframe;
 use crate::flight::rehearse::betaflight::settings;
 use crate::flight::rehearse::clock::SharedClock;
-use crate::flight::rehearse::firmware::Firmware;
+use crate::flight::rehearse::firmware::{self, Firmware};
 use crate::flight::rehearse::plant::Plant;
 use crate::flight::rehearse::{FirmwareWire, Ports, Rehearsal, STEP_S, flown};
 use crate::flight::sensors::SensorConfig;
@@ -137,7 +137,7 @@ struct Flight<'a> {
 impl<'a> Flight<'a> {
     /// The firmware, and the vehicle on its pad.
     fn begin(&self, position: [f64; 3], heading: f64) -> anyhow::Result<(Rehearsal<'a>, Firmware)> {
-        let Args { firmware, settings: own, clock, seed, .. } = self.args;
+        let Args { firmware: given, settings: own, clock, seed, .. } = self.args;
         let clock = match clock {
             ClockKind::Lockstep => SharedClock::lockstep()?,
             ClockKind::Wall => SharedClock::wall(),
@@ -147,9 +147,9 @@ impl<'a> Flight<'a> {
             std::fs::read_to_string(path)
                 .map_err(|error| BadInput::new(path.display(), error, "command lines of the firmware", ""))
         })?;
-        let path = firmware.as_deref().unwrap_or(Path::new(""));
+        let path = firmware::find(given.as_deref().unwrap_or(Path::new("")))?;
         let wire = FirmwareWire::new(Ports::BETAFLIGHT, clock)?;
-        let firmware = Firmware::start(path, &own, &settings(self.full_rate), &wire.clock)?;
+        let firmware = Firmware::start(&path, &own, &settings(self.full_rate), &wire.clock)?;
         for line in &firmware.refused {
             tell(&format!("the firmware refuses a setting: {line}"));
         }

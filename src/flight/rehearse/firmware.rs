@@ -21,21 +21,27 @@ const OUTPUT: &str = "output.txt";
 /// How it marks a line that it does not take.
 const REFUSED: &str = "###ERROR";
 
+fn refusal(path: &Path, found: String) -> BadInput {
+    let advice = "build it with `make TARGET=SITL` in Betaflight's sources (docs/flying.md)";
+    BadInput::new(format!("--firmware {}", path.display()), found, "Betaflight's simulator build", advice)
+}
+
+/// Where the program at `path` is, for a process in another folder; an error where there is none.
+pub fn find(path: &Path) -> std::result::Result<PathBuf, BadInput> {
+    fs::canonicalize(path).map_err(|error| refusal(path, error.to_string()))
+}
+
 impl Firmware {
-    /// Sets up and starts the program at `path`: with the `user`'s own command lines first, `settings` over them, and
-    /// the time of `clock`.
+    /// Sets up and starts the program at the absolute `path`: with the `user`'s own command lines first, `settings`
+    /// over them, and the time of `clock`.
     pub fn start(path: &Path, user: &str, settings: &str, clock: &SharedClock) -> Result<Self> {
-        let refuse = |found: String| {
-            let advice = "build it with `make TARGET=SITL` in Betaflight's sources (docs/flying.md)";
-            BadInput::new(format!("--firmware {}", path.display()), found, "Betaflight's simulator build", advice)
-        };
-        let path = fs::canonicalize(path).map_err(|error| refuse(error.to_string()))?;
+        let refuse = |found: String| refusal(path, found);
         let folder = tempfile::tempdir().map_err(|error| Error::Failed(format!("no temporary folder: {error}")))?;
         let own = |line: &&str| !["save", "batch", "exit", "defaults"].iter().any(|word| line.trim().starts_with(word));
         let user: String = user.lines().filter(own).flat_map(|line| [line, "\n"]).collect();
         let lines = format!("{user}\n{settings}save\n");
         fs::write(folder.path().join("settings.txt"), lines).map_err(Error::write(folder.path()))?;
-        let mut set_up = Command::new(&path);
+        let mut set_up = Command::new(path);
         set_up.args(["--config", "settings.txt"]).current_dir(folder.path()).stdin(Stdio::null());
         let said = set_up.output().map_err(|error| refuse(error.to_string()))?;
         let said = String::from_utf8_lossy(&said.stdout).into_owned();
@@ -45,7 +51,7 @@ impl Firmware {
         }
         let refused: Vec<_> = said.lines().filter(|line| line.contains(REFUSED)).map(str::to_string).collect();
         let output = File::create(folder.path().join(OUTPUT)).map_err(Error::write(folder.path()))?;
-        let mut fly = Command::new(&path);
+        let mut fly = Command::new(path);
         fly.current_dir(folder.path()).stdin(Stdio::null()).stderr(Stdio::null()).stdout(output);
         clock.give(&mut fly, folder.path())?;
         let child = fly.spawn().map_err(|error| refuse(error.to_string()))?;

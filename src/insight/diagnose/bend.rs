@@ -1,18 +1,20 @@
 //! First bend, then add: what is left beside a delay or an order of the rates is explained by the form of their
-//! response before another cause is looked for.
+//! response before another cause is looked for, and what is left beside a cause of the thrust by how thrust goes with
+//! throttle and voltage.
 
-use super::bends::responds;
+use super::bends;
 use super::fit::{self, FitPoint};
-use super::numbers::{BEGIN, FORMS};
 use super::problem::Problem;
 use super::whiten::Whitener;
 use crate::insight::criteria::evident::LEAST_GAIN;
 use crate::model::effects::Card;
 
-/// `point` with the response bent, where one of `held` is about it and the bend is evident.
+/// `point` with the response or the thrust bent, where one of `held` is about it and the bend is evident.
 pub fn bend(problem: &Problem, whitener: &Whitener, point: FitPoint, held: &[&'static Card]) -> FitPoint {
-    let open: Vec<usize> = (FORMS..BEGIN).filter(|k| !point.free.contains(k)).collect();
-    if open.is_empty() || !held.iter().any(|card| responds(card)) {
+    let numbers = &problem.model.numbers;
+    let known = |k: &usize| numbers[*k].high > numbers[*k].low && !point.free.contains(k);
+    let open: Vec<usize> = bends::open(held).filter(known).collect();
+    if open.is_empty() {
         return point;
     }
     let x = point.x.clone();

@@ -125,7 +125,7 @@ pub fn renewed(
     mut found: Vec<Candidate>,
 ) -> Vec<Candidate> {
     let Some(last) = held.last() else { return found };
-    found.retain(|c| c.card().id != last.id);
+    found.retain(|c| held.iter().all(|h| h.id != c.card().id));
     let of = |card: &Card| span(card).map(|k| &problem.model.numbers[k]);
     let early = of(last).any(|n| n.writes.any(&UPSTREAM));
     let (rates, forces) = (of(last).any(|n| n.rates), of(last).any(|n| n.forces));

@@ -1,11 +1,13 @@
 //! Causes that have the same mean, told apart by what else they would leave.
 
-use super::fit;
+use super::agreement;
+use super::fit::{self, FitPoint};
 use super::lost::{Lost, lost_commands};
 use super::numbers::span;
 use super::problem::Problem;
 use super::select::{Added, Selection};
 use crate::base::stats::mean;
+use crate::insight::criteria::evident::LEAST_GAIN;
 use crate::insight::criteria::rival::{LOST_DELAY, SAME_DELAY_S, SAME_DELAY_SHARE, SAME_LAG_SHARE};
 use crate::model::constants::CONTROL_S;
 use crate::model::effects::{self, Card, Evidence, Role};
@@ -18,30 +20,77 @@ fn at(card: &Card) -> usize {
 /// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two
 /// of the same size.
 pub fn clocks(problem: &Problem, selection: &mut Selection) {
-    effects::twins(Evidence::OdometryClock).for_each(|(stamped, delayed)| clock(problem, selection, stamped, delayed));
+    for (stamped, delayed) in effects::twins(Evidence::OdometryClock) {
+        clock(problem, selection, stamped, delayed);
+        common(problem, selection, stamped, delayed);
+    }
+}
+
+/// The same of delays that are the parts of one: what they have in common is the clock's, as far as the odometry was
+/// off by as much, and what one of them has besides is its own.
+fn common(problem: &Problem, selection: &mut Selection, stamped: &'static Card, delayed: &'static Card) {
+    let moved = moved(problem);
+    let parts: Vec<&'static Card> = delayed.parts.iter().filter_map(|id| effects::card(id)).collect();
+    let held = |card: &&&Card| selection.added.iter().any(|a| a.card.id == card.id);
+    if parts.is_empty() || parts.iter().filter(held).count() < parts.len() {
+        return;
+    }
+    let mut x = selection.point.x.clone();
+    let least = parts.iter().map(|part| x[at(part)]).fold(f64::INFINITY, f64::min);
+    if moved == 0.0 || !is_same(least, moved) {
+        return;
+    }
+    x[at(stamped)] = least;
+    parts.iter().for_each(|part| x[at(part)] -= least);
+    let gone: Vec<&'static Card> = parts.into_iter().filter(|part| is_same(x[at(part)] + least, least)).collect();
+    gone.iter().for_each(|part| x[at(part)] = 0.0);
+    let mut free = selection.point.free.clone();
+    free.retain(|k| gone.iter().all(|part| at(part) != *k));
+    free.push(at(stamped));
+    let point = fit::fit(problem, &selection.whitener, &x, &free);
+    if point.total() < selection.point.total() + LEAST_GAIN.get() {
+        selection.added.retain(|a| gone.iter().all(|part| part.id != a.card.id));
+        selection.added.push(Added { card: stamped, ties: Vec::new() });
+        selection.point = point;
+    }
+}
+
+/// By how much the odometry's clocks were moved to the gyro's, s.
+fn moved(problem: &Problem) -> f64 {
+    mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>())
+}
+
+/// Whether a delay is what the odometry was moved by.
+fn is_same(delay: f64, moved: f64) -> bool {
+    (delay - moved).abs() <= SAME_DELAY_S.get() + SAME_DELAY_SHARE.get() * moved.abs()
 }
 
 /// The same of one pair.
 fn clock(problem: &Problem, selection: &mut Selection, stamped: &'static Card, delayed: &'static Card) {
-    let moved = mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>());
+    let moved = moved(problem);
     let is_one = |a: &Added| [stamped.id, delayed.id].contains(&a.card.id);
     let Some(i) = selection.added.iter().position(is_one) else { return };
     let mut x = selection.point.x.clone();
     let late = x[at(delayed)] + x[at(stamped)];
     let both = selection.added.iter().filter(|a| is_one(a)).count() > 1;
-    if moved == 0.0 || both || (late - moved).abs() > SAME_DELAY_S.get() + SAME_DELAY_SHARE.get() * moved.abs() {
+    if moved == 0.0 || both || !is_same(late, moved) {
         return;
     }
     (x[at(delayed)], x[at(stamped)]) = (0.0, late);
     let mut free = selection.point.free.clone();
     free.retain(|k| *k != at(delayed) && *k != at(stamped));
     free.push(at(stamped));
+    let point = fit::fit(problem, &selection.whitener, &x, &free);
+    let apart = |at: &FitPoint| agreement::squares(problem, &selection.whitener, &at.residual);
+    if apart(&point) > apart(&selection.point) + LEAST_GAIN.get() {
+        return;
+    }
     selection.added[i] = Added { card: stamped, ties: Vec::new() };
     // The odometry was moved to a gyro that was late itself: its velocity seems late by as much, and is none.
     selection
         .added
         .retain(|a| a.card.role != Role::VelocityLag || (x[at(a.card)] / moved - 1.0).abs() > SAME_LAG_SHARE.get());
-    selection.point = fit::fit(problem, &selection.whitener, &x, &free);
+    selection.point = point;
 }
 
 /// Lost commands and a short delay have the same mean: what single stick movements leave decides.

@@ -161,6 +161,18 @@ fn descend(
 /// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken
 /// as they are there.
 pub fn refit(problem: &Problem, whitener: &Whitener, point: &FitPoint, own: &[usize], x: &[f64]) -> FitPoint {
+    refit_in(CHORDS + 2, problem, whitener, point, own, x)
+}
+
+/// The same in no more than so many steps.
+pub fn refit_in(
+    steps: usize,
+    problem: &Problem,
+    whitener: &Whitener,
+    point: &FitPoint,
+    own: &[usize],
+    x: &[f64],
+) -> FitPoint {
     // Rates and forces hardly know of each other: what the numbers do not touch stays as it is.
     let all = || own.iter().map(|&k| &problem.model.numbers[k]);
     let (rates, forces) = (all().any(|n| n.rates), all().any(|n| n.forces));
@@ -175,7 +187,7 @@ pub fn refit(problem: &Problem, whitener: &Whitener, point: &FitPoint, own: &[us
     let residual = problem.residuals(&state);
     let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
     let mut at = FitPoint { x: x.to_vec(), state, free: Vec::new(), white: Vec::new(), residual, cost };
-    for _ in 0..CHORDS + 2 {
+    for _ in 0..steps {
         let mine = whitened_slopes(problem, whitener, &at.state, &at.x, own);
         let white: Vec<&ChannelValues> = kept.iter().map(|&j| &point.white[j]).chain(&mine).collect();
         let gram = Grams::new(&white, &problem.rows, problem.blocks).sum;

@@ -1,8 +1,18 @@
-//! Directions of form: what the rate response of a real flight controller has beside a lag and a delay.
+//! Directions of form: what the rate response of a real flight controller has beside a lag and a delay, and how the
+//! thrust of real motors goes with throttle and voltage together.
 
 /// The rate response is bent by the simulated rate's change so long before, s: at each time on each axis.
 pub const TAPS_S: [f64; 4] = [0.01, 0.025, 0.05, 0.1];
 /// A bend of the response by so much, s, is about that of a short lag.
 pub const TAP_S: f64 = 0.002;
-/// How many numbers bend it.
-pub const COUNT: usize = 3 * TAPS_S.len();
+/// How many numbers bend the response, and the thrust.
+pub const RESPONSE: usize = 3 * TAPS_S.len();
+pub const THRUST: usize = 2;
+/// How many numbers bend anything.
+pub const COUNT: usize = RESPONSE + THRUST;
+
+/// What the thrust is bent by: rotors turn at a speed that goes with throttle times voltage, so that the thrust has the
+/// squares of both. `voltage` is relative to that at the middle of the battery, less 1.
+pub fn thrust(command: f64, voltage: f64) -> [f64; THRUST] {
+    [command * command * voltage, voltage * voltage]
+}

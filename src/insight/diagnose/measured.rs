@@ -1,6 +1,6 @@
 //! What was measured, channel by channel.
 
-use super::channels::{CHANNELS, PUSH, TURN, VOLTAGE};
+use super::channels::{CHANNELS, FORCE, PUSH, TURN, VOLTAGE};
 use super::record::FlightRecord;
 use crate::model::attitude::{compose, in_world, rotation_vector};
 
@@ -11,6 +11,8 @@ pub fn measured(record: &FlightRecord, gravity: f64) -> [Vec<f64>; CHANNELS] {
         let mean = |&[from, to]: &[usize; 2]| (from..to).map(|i| record.imu[c][i]).sum::<f64>() / (to - from) as f64;
         *channel = record.bins.iter().map(mean).collect();
     }
+    let made = out[FORCE + 2].iter_mut().zip(&record.mixed).filter(|(_, mixed)| **mixed);
+    made.for_each(|(force, _)| *force = f64::NAN);
     for &[from, to] in &record.windows {
         let [w, a, b, c] = record.attitude[from];
         let turn = rotation_vector(compose([w, -a, -b, -c], record.attitude[to]));

@@ -1,6 +1,9 @@
 //! The model of the flights at any values of its numbers: the vehicle with every effect.
 
-use super::numbers::{DISCHARGE, DRAG, EFFECTS, FORMS, LOG_AT, MAX_RATE, ModelNumber, Numbers, TAU, THRUST, span};
+use super::bends;
+use super::numbers::{
+    BEGIN, DISCHARGE, DRAG, EFFECTS, FORMS, LOG_AT, MAX_RATE, ModelNumber, Numbers, TAU, THRUST, span,
+};
 use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::extended::Extended;
 use crate::model::dynamics::{Factors, Parameters, drag};
@@ -25,11 +28,14 @@ impl Model {
 
     /// Where the thrust command is a measured rotor speed, the voltage has no part in the thrust.
     pub fn forget_voltage(&mut self) {
-        let middle = 0.5 * (self.vehicle.battery.full_v + self.vehicle.battery.empty_v);
+        let middle = self.middle_v();
         for (with, without) in [(4, 0), (5, 1)] {
             self.base[THRUST.start + without] += middle * self.base[THRUST.start + with];
             self.base[THRUST.start + with] = 0.0;
             (self.numbers[THRUST.start + with].low, self.numbers[THRUST.start + with].high) = (0.0, 0.0);
+        }
+        for number in &mut self.numbers[bends::THRUST..BEGIN] {
+            (number.low, number.high) = (0.0, 0.0);
         }
     }
 
@@ -63,6 +69,11 @@ impl Model {
     pub fn dirty(&self, which: &[usize], x: &[f64]) -> Quantities {
         let writes = which.iter().fold(Quantities::NONE, |all, &k| all.and(self.numbers[k].writes));
         writes.reached(&self.present(x))
+    }
+
+    /// The voltage at the middle of the battery, V.
+    pub fn middle_v(&self) -> f64 {
+        0.5 * (self.vehicle.battery.full_v + self.vehicle.battery.empty_v)
     }
 
     pub fn vehicle(&self) -> &Vehicle {

@@ -84,7 +84,7 @@ impl Numbers {
         out.response(vehicle);
         out.forces(vehicle);
         out.effects(vehicle);
-        out.forms();
+        out.forms(vehicle);
         for (flight, volts) in begin_v.iter().enumerate() {
             let extent = Extent { bounds: [0.0, 1e3], step: 1e-2, trust: TRUST_VOLTAGE.get() };
             out.add(format!("begin_v.{flight}"), "V", *volts, extent, &[Quantity::Voltage]);
@@ -136,12 +136,17 @@ impl Numbers {
         self.add("battery.rate_v_s".into(), "V/s", vehicle.battery.rate_v_s, extent, &[Quantity::Voltage]);
     }
 
-    /// What bends the response: nothing, in the base.
-    fn forms(&mut self) {
-        for i in 0..forms::COUNT {
+    /// What bends response and thrust: nothing, in the base.
+    fn forms(&mut self, vehicle: &Vehicle) {
+        for i in 0..forms::RESPONSE {
             let name = format!("response.{}.{}", ["roll", "pitch", "yaw"][i / TAPS_S.len()], i % TAPS_S.len());
             let extent = Extent { bounds: [-0.1, 0.1], step: 0.1 * TAP_S, trust: 10.0 * TAP_S };
             self.add(name, "s", 0.0, extent, &[Quantity::Gyro]);
+        }
+        let full = vehicle.thrust_to_weight() * vehicle.gravity_m_s2;
+        for i in 0..forms::THRUST {
+            let extent = Extent { bounds: [-full, full], step: 1e-3 * full, trust: full };
+            self.add(format!("thrust.{i}"), "m/s2", 0.0, extent, &[Quantity::SpecificForce]);
         }
     }
 

@@ -3,7 +3,7 @@
 use super::actuator_response::{ActuatorResponse, actuator_response, body_rates, supplied};
 use super::bends;
 use super::channels::{CHANNELS, TURN, VOLTAGE};
-use super::forms::TAPS_S;
+use super::forms::{self, TAPS_S};
 use super::kinematics::{self, lagged, slopes};
 use super::model::Model;
 use super::numbers::BEGIN;
@@ -93,6 +93,7 @@ impl Predicted {
         if dirty.has(Quantity::SpecificForce) {
             let lag = [model.acting(x, Role::VelocityLag), model.vehicle().gravity_m_s2];
             self.push(&p, record, lag);
+            self.bend_thrust(model, record, x);
         }
         if dirty.any(&[Quantity::Gyro, Quantity::Accelerometer]) {
             self.sense(&p, dirty, model, record, x);
@@ -160,6 +161,16 @@ impl Predicted {
             out.push(extended::force(p, &inputs));
         }
         self.force = out.into();
+    }
+
+    /// What the thrust has beside its curve.
+    fn bend_thrust(&mut self, model: &Model, record: &FlightRecord, x: &[f64]) {
+        let Some(sizes) = bends::thrust(x).filter(|_| !record.volts.is_empty()) else { return };
+        let middle = model.middle_v();
+        for (i, force) in Arc::make_mut(&mut self.force).iter_mut().enumerate() {
+            let forms = forms::thrust(self.command[i][3], self.voltage[i] / middle - 1.0);
+            force[2] += sizes.iter().zip(forms).map(|(size, form)| size * form).sum::<f64>();
+        }
     }
 
     /// Readings, averaged over bins.

@@ -5,10 +5,11 @@ use super::motors::{Driven, driven};
 use crate::base::stats::quantile;
 use crate::flight::Log;
 use crate::flight::series::{last_at, period};
-use crate::flight::spans::length;
+use crate::flight::spans::{contain, length};
 use crate::insight::criteria::consistent::ONE_CLOCK_SHARE;
+use crate::insight::criteria::identified::CALM_LEAST;
 use crate::insight::prepare::flight::PreparedFlight;
-use crate::insight::prepare::rotors::command_per_speed;
+use crate::insight::prepare::rotors::{command_per_speed, mixing};
 use crate::insight::prepare::windows::{often_enough, windows};
 use crate::insight::quality::Quality;
 use crate::model::attitude::{Quaternion, body_axes};
@@ -75,6 +76,8 @@ pub struct FlightRecord {
     pub windows: Vec<[usize; 2]>,
     /// First sample of each bin, and one beyond its last.
     pub bins: Vec<[usize; 2]>,
+    /// Whether the thrust of each bin is what a mixer made of the command.
+    pub mixed: Vec<bool>,
 }
 
 impl FlightRecord {
@@ -133,13 +136,23 @@ impl FlightRecord {
             volts,
             windows: Vec::new(),
             bins: Vec::new(),
+            mixed: Vec::new(),
             time,
         };
         out.bins = out.divide(BIN_S.max(period(&out.time) * 0.99));
+        out.mixed = out.mixed(log);
         if turns && often_enough(&log.odometry) {
             out.windows = out.stretches();
         }
         out
+    }
+
+    /// Whether each bin is the mixer's; none where hardly any would be left.
+    fn mixed(&self, log: &Log) -> Vec<bool> {
+        let mixing = mixing(log);
+        let mixed: Vec<bool> = self.bins.iter().map(|[from, _]| contain(&mixing, self.time[*from])).collect();
+        let left = mixed.iter().filter(|mixed| !**mixed).count() as f64;
+        if left < CALM_LEAST.get() * mixed.len() as f64 { vec![false; mixed.len()] } else { mixed }
     }
 
     fn divide(&self, width: f64) -> Vec<[usize; 2]> {

@@ -1,7 +1,7 @@
 //! Which effects explain the residuals: rank by score, refit the best and their rivals, keep the best, and again.
 
 use super::bend::bend;
-use super::bends::is_form;
+use super::bends::{self, is_form};
 use super::candidates::{Candidate, base_numbers, candidates, causes, renewed};
 use super::fit::{self, FitPoint};
 use super::numbers::span;
@@ -155,10 +155,19 @@ impl<'a> Search<'a> {
         let open = |s: &&(usize, f64, f64)| !(full && of_rates(self.found[s.0].card()));
         let order: Vec<_> = order.iter().filter(open).copied().collect();
         let mut trials = try_best(problem, &self.whitener, &self.point, &self.found, &order);
+        trials.retain(|t| !t.contradicted(problem, &self.whitener, &self.point));
         // Beside a rival that is already there, it would only take that one's place.
         let held = self.held();
         trials.retain(|t| !(t.bounded(problem) && held.iter().any(|h| are_rivals(h, t.card))));
         let Some(best) = best(problem, &trials) else { return false };
+        if bends::thrusts(best.card) {
+            // How thrust goes with throttle and voltage is the vehicle's own.
+            let bent = bend(problem, &self.whitener, self.point.clone(), &[best.card]);
+            if bent.free.len() > self.point.free.len() {
+                self.point = bent;
+                return true;
+            }
+        }
         let near = trials.iter().filter(|t| t.card.id != best.card.id && tied(best, t));
         self.pending = near.map(|t| (t.card, t.gain)).collect();
         self.added.push(Added { card: best.card, ties: Vec::new() });
@@ -178,7 +187,10 @@ impl<'a> Search<'a> {
         let best = trials.into_iter().min_by(|a, b| a.point.total().total_cmp(&b.point.total()))?;
         let pays = best.point.total() < bent - LEAST_GAIN.get() && is_material(best.card, &best.point.x);
         (pays && !best.bounded(self.problem)).then(|| {
-            self.added.push(Added { card: best.card, ties: Vec::new() });
+            // Before the last, whose ties are still to be found.
+            let last = self.added.len().saturating_sub(1);
+            self.added.insert(last, Added { card: best.card, ties: Vec::new() });
+            self.pending.retain(|(card, _)| card.id != best.card.id);
             fit::fit(self.problem, &self.whitener, &best.point.x, &best.point.free)
         })
     }

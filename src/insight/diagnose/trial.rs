@@ -1,5 +1,6 @@
 //! Effects tried beside what stands: fitted with the base, each from all sizes that could be it.
 
+use super::agreement;
 use super::candidates::{Candidate, Direction};
 use super::fit::{self, FitPoint};
 use super::numbers::{place, span};
@@ -10,7 +11,7 @@ use crate::insight::criteria::evident::{
     BOUNDED_MERIT, EVIDENCE_WORTH_A_FIT, GAIN_WORTH_A_FIT, LEAST_GAIN, RARE_GAIN, SHORT_LIST,
 };
 use crate::insight::criteria::rival::TIE_DEVIATIONS;
-use crate::model::effects::{Card, are_rivals};
+use crate::model::effects::{Card, EffectKind, are_rivals};
 use rayon::prelude::*;
 
 /// An effect that was tried beside what stands.
@@ -30,6 +31,13 @@ impl Trial {
 
     pub fn bounded(&self, problem: &Problem) -> bool {
         is_bounded(problem, self.card, &self.point.x)
+    }
+
+    /// Whether it is an error of a sensor that attitude and velocity speak against: they agree with the sensors less
+    /// than they do at `point`, without it.
+    pub fn contradicted(&self, problem: &Problem, whitener: &Whitener, point: &FitPoint) -> bool {
+        let apart = |at: &FitPoint| agreement::squares(problem, whitener, &at.residual);
+        self.card.kind == EffectKind::Sensor && apart(&self.point) > apart(point) + LEAST_GAIN.get()
     }
 }
 
@@ -81,6 +89,9 @@ fn chosen(found: &[Candidate], order: &[(usize, f64, f64)]) -> Vec<usize> {
     chosen
 }
 
+/// Steps after which the best of several starts is known.
+const GLANCE: usize = 2;
+
 /// What effects are tried beside.
 struct Trials<'a> {
     problem: &'a Problem,
@@ -93,37 +104,50 @@ impl Trials<'_> {
     /// The effect of candidate `j`, fitted from wherever it ends best.
     fn best(&self, j: usize) -> Trial {
         let Direction { card, start } = &self.found[j].direction;
-        let x = &self.point.x;
         let before = self.point.total();
-        let mut best = self.fitted(x, card, start, 1.0);
-        if best.total() > before {
-            // Too far away: from a size too small to matter, downhill.
-            best = self.fitted(x, card, start, 0.2 * card.parameters[0].typical[0] / start[0].1.abs());
-        }
+        let mut starts = vec![self.from(&self.point.x, card, start, 1.0)];
         if card.parameters[0].unit == "s" {
             // Late signals fit at more than one delay.
-            let directions =
-                || self.found.iter().map(|c| &c.direction).enumerate().filter(|(_, d)| d.card.id == card.id);
-            let others = directions().filter(|(i, _)| *i != j).map(|(_, d)| self.fitted(x, card, &d.start, 1.0));
-            let beside = directions().filter(|_| !card.absorbed_by.is_empty());
-            let beside = beside.map(|(_, d)| self.fitted(&self.shortened(card, d.start[0].1), card, &d.start, 1.0));
-            for another in others.chain(beside) {
-                if another.total() < best.total() {
-                    best = another;
+            for (i, candidate) in self.found.iter().enumerate().filter(|(_, c)| c.card().id == card.id) {
+                let start = &candidate.direction.start;
+                if i != j {
+                    starts.push(self.from(&self.point.x, card, start, 1.0));
+                }
+                if !card.absorbed_by.is_empty() {
+                    starts.push(self.from(&self.shortened(card, start[0].1), card, start, 1.0));
                 }
             }
+        }
+        let mut best = self.fitted(card, &starts);
+        if best.total() > before {
+            // Too far away: from a size too small to matter, downhill.
+            let small = 0.2 * card.parameters[0].typical[0] / start[0].1.abs();
+            best = self.fitted(card, &[self.from(&self.point.x, card, start, small)]);
         }
         let gain = before - best.total();
         Trial { card, point: best, gain }
     }
 
-    /// FittedSelection from the numbers `x` with the effect at `shrink` times the sizes `start`.
-    fn fitted(&self, x: &[f64], card: &Card, start: &[(usize, f64)], shrink: f64) -> FitPoint {
-        let own: Vec<usize> = span(card).collect();
+    /// The numbers `x` with the effect at `shrink` times the sizes `start`.
+    fn from(&self, x: &[f64], card: &Card, start: &[(usize, f64)], shrink: f64) -> Vec<f64> {
         let mut x = x.to_vec();
-        own.iter().for_each(|&k| x[k] = 0.0);
+        span(card).for_each(|k| x[k] = 0.0);
         start.iter().for_each(|(k, value)| x[*k] = value * shrink);
-        fit::refit(self.problem, self.whitener, self.point, &own, &x)
+        x
+    }
+
+    /// The effect fitted from that of `starts` that does best after a few steps.
+    fn fitted(&self, card: &Card, starts: &[Vec<f64>]) -> FitPoint {
+        let own: Vec<usize> = span(card).collect();
+        let glance = |x: &Vec<f64>| fit::refit_in(GLANCE, self.problem, self.whitener, self.point, &own, x);
+        let first = match starts {
+            [only] => only.clone(),
+            _ => {
+                let all = starts.iter().map(glance);
+                all.min_by(|a, b| a.total().total_cmp(&b.total())).map_or(self.point.x.clone(), |at| at.x)
+            }
+        };
+        fit::refit(self.problem, self.whitener, self.point, &own, &first)
     }
 
     /// The point's numbers, with the time constants that a delay is mistaken for shorter by it: a lag that was fitted

@@ -6,13 +6,16 @@ use nalgebra::DMatrix;
 const SINGULAR: f64 = 1e-12;
 
 /// The inverse of a symmetric matrix with `ridge` on its diagonal, by way of its correlation form: units differ by
-/// orders of magnitude. `None` where it is not positive.
+/// orders of magnitude. A number of which nothing is known takes no part: its row is 0. `None` where the rest is not
+/// positive.
 pub fn inverse(matrix: &DMatrix<f64>, ridge: &[f64]) -> Option<DMatrix<f64>> {
     let n = matrix.nrows();
-    let scale: Vec<f64> = (0..n).map(|i| (matrix[(i, i)] + ridge[i]).max(1e-300).sqrt().recip()).collect();
-    let scaled = DMatrix::from_fn(n, n, |i, j| {
-        let own = if i == j { ridge[i] } else { 0.0 };
-        (matrix[(i, j)] + own) * scale[i] * scale[j] + if i == j { SINGULAR } else { 0.0 }
+    let own = |i: usize| matrix[(i, i)] + ridge[i];
+    let scale: Vec<f64> = (0..n).map(|i| if own(i) == 0.0 { 0.0 } else { own(i).max(1e-300).sqrt().recip() }).collect();
+    let scaled = DMatrix::from_fn(n, n, |i, j| match i == j {
+        true if scale[i] == 0.0 => 1.0,
+        true => own(i) * scale[i] * scale[i] + SINGULAR,
+        false => matrix[(i, j)] * scale[i] * scale[j],
     });
     let inner = scaled.cholesky()?.inverse();
     Some(DMatrix::from_fn(n, n, |i, j| inner[(i, j)] * scale[i] * scale[j]))
@@ -29,6 +32,8 @@ mod tests {
         // In the units of the matrix: an entry off the diagonal is as large as the ratio of its rows' units.
         assert!(off[(0, 0)].abs() < 1e-9 && off[(1, 1)].abs() < 1e-9, "{off}");
         assert!(inverse(&DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 1.0]), &[0.0; 2]).is_none());
+        let unknown = inverse(&DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 0.0]), &[0.0; 2]).unwrap();
+        assert!((unknown[(0, 0)] - 0.25).abs() < 1e-9 && unknown[(1, 1)] == 0.0, "{unknown}");
         let ridged = inverse(&DMatrix::from_element(1, 1, 3.0), &[1.0]).unwrap();
         assert!((ridged[(0, 0)] - 0.25).abs() < 1e-9);
     }

@@ -6,6 +6,9 @@ use super::inverse::inverse;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+/// Variance of a number that changes nothing, in whatever units.
+const UNKNOWN: f64 = 1e18;
+
 /// Covariance of the numbers whose columns are `own`, from the products with the column `residual`,
 /// by leaving out `size` stretches of time after the other (the cluster jackknife, CR3): without a
 /// group, the values would move by `(H - H_g)^-1 U_g`, with H the normal equations and U the
@@ -24,6 +27,7 @@ pub fn jackknife(
     let whole = Grams::pick(&grams.sum, own, own);
     let everything = inverse(&whole, ridge)?;
     let all = [own, &[residual]].concat();
+    let known = |i: usize| whole[(i, i)] + ridge[i] > 0.0;
     let moved = |group: &[DMatrix<f64>]| {
         let start = DMatrix::zeros(n + 1, n + 1);
         let out = group.iter().fold(start, |sum, gram| sum + Grams::pick(gram, &all, &all));
@@ -32,11 +36,12 @@ pub fn jackknife(
         }
         let rest = &whole - out.view((0, 0), (n, n));
         // A group without which nothing can be told counts as it is.
-        let told = (0..n).all(|i| rest[(i, i)] + ridge[i] > 0.0);
+        let told = (0..n).all(|i| rest[(i, i)] + ridge[i] > 0.0 || !known(i));
         let inner = inverse(&rest, ridge).filter(|_| told);
         Some(inner.as_ref().unwrap_or(&everything) * out.view((0, n), (n, 1)).column(0))
     };
     let moves: Vec<DVector<f64>> = grams.blocks.par_chunks(size).filter_map(moved).collect();
-    let spread = moves.iter().fold(DMatrix::zeros(n, n), |sum, moved| sum + moved * moved.transpose());
+    let unknown = DMatrix::from_fn(n, n, |i, j| if i == j && !known(i) { UNKNOWN } else { 0.0 });
+    let spread = moves.iter().fold(unknown, |sum, moved| sum + moved * moved.transpose());
     Some((spread, moves.len()))
 }

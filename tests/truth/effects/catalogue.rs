@@ -38,6 +38,7 @@ pub const CATALOGUE: &[Entry] = &[
     entry_of("rate_second_order", "wn", "rad/s", 60.0, 150.0, false),
     entry_of("yaw_second_order", "wn", "rad/s", 15.0, 60.0, false),
     entry_of("rate_slew_limit", "limit", "rad/s2", 100.0, 600.0, false),
+    entry_of("yaw_slew_limit", "limit", "rad/s2", 10.0, 60.0, false),
     entry_of("rate_expo", "e", "", 0.05, 0.5, false),
     entry_of("response_voltage", "k", "1/V", 0.05, 0.2, false),
     entry_of("stream_offset", "offset", "s", 0.001, 0.015, false),
@@ -87,6 +88,9 @@ pub fn entry(id: &str) -> &'static Entry {
     CATALOGUE.iter().find(|entry| entry.id == id).unwrap_or_else(|| panic!("no effect `{id}` in the catalogue"))
 }
 
+/// What replaces the law of the rates' response, the more of it the smaller its number.
+const REPLACING: [&str; 4] = ["rate_second_order", "yaw_second_order", "rate_slew_limit", "yaw_slew_limit"];
+
 /// Any identifier.
 pub fn any(rng: &mut StdRng) -> &'static str {
     CATALOGUE[rng.random_range(0..CATALOGUE.len())].id
@@ -97,7 +101,7 @@ pub fn pair(rng: &mut StdRng) -> [&'static str; 2] {
     loop {
         let [a, b] = [any(rng), any(rng)];
         // Each of these replaces the same law.
-        let rival = |id| matches!(id, "rate_second_order" | "yaw_second_order" | "rate_slew_limit");
+        let rival = |id| REPLACING.contains(&id);
         if a != b && !(rival(a) && rival(b)) {
             return [a, b];
         }
@@ -113,7 +117,7 @@ impl Entry {
 
     /// Whether a smaller size is more of it.
     pub fn grows_downwards(&self) -> bool {
-        matches!(self.id, "rate_second_order" | "yaw_second_order" | "rate_slew_limit")
+        REPLACING.contains(&self.id)
     }
 
     /// Whether it changes how the vehicle flies, and in ordinary flight.

@@ -55,6 +55,7 @@ pub struct Terms {
     /// The same of yaw alone.
     pub yaw_second_order: Option<[f64; 2]>,
     pub slew: Option<f64>,
+    pub yaw_slew: Option<f64>,
     pub expo: f64,
     pub response_voltage: f64,
     pub cross: [f64; 2],
@@ -138,6 +139,7 @@ impl Terms {
             "rate_second_order" => self.second_order = Some([get("wn"), get("zeta")]),
             "yaw_second_order" => self.yaw_second_order = Some([get("wn"), get("zeta")]),
             "rate_slew_limit" => self.slew = Some(get("limit")),
+            "yaw_slew_limit" => self.yaw_slew = Some(get("limit")),
             "rate_expo" => self.expo = get("e"),
             "response_voltage" => self.response_voltage = get("k"),
             "stream_offset" => self.gyro_offset = get("offset"),

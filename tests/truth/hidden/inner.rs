@@ -36,6 +36,9 @@ pub fn change(craft: &Craft, world: &World, command: [f64; 4], time: f64) -> [Ve
         let limits = Vector3::new(limit, limit, YAW_SLEW * limit);
         rates = rates.zip_map(&limits, |rate, limit| rate.clamp(-limit, limit));
     }
+    if let Some(limit) = terms.yaw_slew {
+        rates.z = rates.z.clamp(-limit, limit);
+    }
     let w = craft.rates;
     rates.x += terms.gyroscopic * w.y * w.z;
     rates.y -= terms.gyroscopic * w.z * w.x;

@@ -17,7 +17,16 @@ const fn kind(id: &'static str, right: &'static [&'static str], low: f64, high: 
 
 /// What is true of every vehicle of this truth, and in no compact model: a rate loop with filters, yaw led by the
 /// rotors, motors that end at full and at idle, and a mixer that makes room for turns. Neither right nor wrong.
-pub const OWN: [&str; 5] = ["rate_delay", "yaw_delay", "rate_second_order", "rate_slew_limit", "mixer_thrust_loss"];
+pub const OWN: [&str; 8] = [
+    "rate_delay",
+    "yaw_delay",
+    "rate_second_order",
+    "yaw_second_order",
+    "rate_slew_limit",
+    "yaw_slew_limit",
+    "mixer_thrust_loss",
+    "mixer_room",
+];
 
 /// All forms. Units are those of the equations that use them.
 pub const KINDS: &[Kind] = &[
@@ -54,7 +63,7 @@ pub const KINDS: &[Kind] = &[
     kind("power_rate", &["rate_expo"], 1.2, 1.6),
     // Shares of the usual authority that are left.
     kind("low_authority", &["rate_slew_limit", "rate_second_order", "mixer_thrust_loss"], 0.25, 0.4),
-    kind("weak_yaw", &["rate_slew_limit", "yaw_authority_loss", "yaw_delay"], 0.15, 0.35),
+    kind("weak_yaw", &["yaw_slew_limit", "rate_slew_limit", "yaw_authority_loss", "yaw_delay"], 0.15, 0.35),
     // The pack: volts at full load, by thrust^1.5 and by electric power; what comes back; the curve; shares.
     kind("load_power", &["voltage_sag", "voltage_relaxation"], 0.8, 2.5),
     kind("load_electric", &["voltage_sag", "voltage_relaxation"], 0.8, 2.5),

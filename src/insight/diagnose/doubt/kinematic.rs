@@ -2,7 +2,7 @@
 //! sensor's error without any model of the vehicle.
 
 use crate::insight::criteria::unseen::{KINEMATIC_DEVIATIONS, KINEMATIC_SHARE};
-use crate::insight::diagnose::channels::{PUSH, TURN};
+use crate::insight::diagnose::agreement::kinematic;
 use crate::insight::diagnose::fitted::FittedSelection;
 use crate::insight::diagnose::numbers::span;
 use crate::insight::diagnose::problem::ChannelValues;
@@ -19,11 +19,8 @@ pub fn missing(fitted: &FittedSelection) -> Vec<&'static Card> {
     let cards: Vec<&'static Card> = effects::cards().filter(sensed).collect();
     let numbers: Vec<usize> = cards.iter().flat_map(|card| span(card)).collect();
     let places: Vec<usize> = (0..point.free.len()).filter(|&i| numbers.contains(&point.free[i])).collect();
-    let only = |values: &ChannelValues| -> ChannelValues {
-        std::array::from_fn(|c| if (TURN..PUSH + 3).contains(&c) { values[c].clone() } else { Vec::new() })
-    };
-    let residual = only(&fitted.selection.whitener.apply(&point.residual, &problem.rows));
-    let columns: Vec<ChannelValues> = places.iter().map(|&i| only(&point.white[i])).collect();
+    let residual = kinematic(&fitted.selection.whitener.apply(&point.residual, &problem.rows));
+    let columns: Vec<ChannelValues> = places.iter().map(|&i| kinematic(&point.white[i])).collect();
     let all: Vec<&ChannelValues> = columns.iter().chain([&residual]).collect();
     let grams = Grams::new(&all, &problem.rows, problem.blocks);
     let n = places.len();

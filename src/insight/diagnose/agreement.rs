@@ -1,0 +1,16 @@
+//! How far attitude and velocity agree with the integrated sensors, without any model of the vehicle.
+
+use super::channels::{PUSH, TURN};
+use super::problem::{ChannelValues, Problem};
+use super::whiten::Whitener;
+
+/// Whitened squares of what is left in turns and pushes.
+pub fn squares(problem: &Problem, whitener: &Whitener, residual: &ChannelValues) -> f64 {
+    let all = whitener.apply(&kinematic(residual), &problem.rows);
+    all.iter().flatten().map(|r| r * r).sum()
+}
+
+/// The turns and pushes of `values` alone.
+pub fn kinematic(values: &ChannelValues) -> ChannelValues {
+    std::array::from_fn(|c| if (TURN..PUSH + 3).contains(&c) { values[c].clone() } else { Vec::new() })
+}
