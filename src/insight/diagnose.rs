@@ -19,6 +19,7 @@ pub mod candidates;
 pub mod cause;
 pub mod channels;
 pub mod contrast;
+pub mod detectable;
 pub mod disambiguate;
 pub mod doubt;
 pub mod drift;
@@ -45,7 +46,6 @@ pub mod numbers;
 pub mod one_motor;
 pub mod oscillation;
 pub mod place;
-pub mod plan;
 pub mod predict;
 pub mod problem;
 pub mod rank;
@@ -142,7 +142,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         (true, true) => Verdict::Clean,
         (true, false) => Verdict::Effects,
     };
-    let (detectable, not_detectable) = plan::judge(&problem, &selection.reach);
+    let (detectable, not_detectable) = detectable::judge(&problem, &selection.reach);
     let extended = match worse {
         Some(worse) => Err(worse),
         None => extend::vehicle(&fitted_kept, &findings),
