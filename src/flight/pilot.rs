@@ -11,6 +11,7 @@ pub mod manoeuvre;
 mod plan;
 mod script;
 mod view;
+mod words;
 
 use crate::base::rng::{Philox, RngStream, Sequence};
 use cascade::{Cascade, Demand};

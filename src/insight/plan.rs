@@ -1,0 +1,121 @@
+//! The next flight: the shortest one whose simulation tells the causes apart that the flights so far do not.
+//!
+//! Causes that are tied take each other's place in the fit ([`causes`]). Every manoeuvre of the pilot is flown in the
+//! simulator, in the vehicle as identified ([`simulate`]). What two causes would leave of each other there, with all
+//! other numbers free to make up for it, by stretch of time, is what the manoeuvre tells ([`separation`]). Manoeuvres
+//! are added by what they tell a second until all is told, and taken away again where it stays told ([`choose`]).
+
+mod causes;
+mod choose;
+mod separation;
+mod simulate;
+mod unseen;
+
+use super::Watch;
+use super::criteria::planned::LONGEST_PLAN_S;
+use super::diagnose::Diagnosed;
+use crate::flight::pilot::Manoeuvre;
+use crate::flight::planned::FlightPlan;
+use crate::model::vehicle::Vehicle;
+use causes::Question;
+use choose::Choice;
+use separation::Pair;
+use serde::Serialize;
+use simulate::Simulation;
+
+/// What to fly next, and what it is expected to tell.
+#[derive(Clone, Debug, Serialize)]
+pub struct NextFlight {
+    /// Whether causes are tied; else it is planned for what the flights so far could not show.
+    pub tied: bool,
+    /// What is to be told from what.
+    pub pairs: Vec<PlannedPair>,
+    /// What is flown, the most useful first; nothing where there is nothing to tell, or no manoeuvre tells it.
+    pub manoeuvres: Vec<ChosenManoeuvre>,
+    /// Length with take-off and landing, s.
+    pub seconds: f64,
+}
+
+/// Two causes, in standard deviations of their difference over stretches of time.
+#[derive(Clone, Debug, Serialize)]
+pub struct PlannedPair {
+    /// Identifiers; no second one where the question is whether the first is there at all.
+    pub causes: [Option<&'static str>; 2],
+    /// What the flights so far are expected to tell.
+    pub now: f64,
+    /// The same with the planned flight.
+    pub then: f64,
+    /// What is wanted.
+    pub wanted: f64,
+    /// Why no flight of the pilot's manoeuvres tells it, where none does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why_not: Option<String>,
+}
+
+/// A manoeuvre of the planned flight.
+#[derive(Clone, Debug, Serialize)]
+pub struct ChosenManoeuvre {
+    /// As the pilot knows it.
+    pub name: &'static str,
+    /// How often.
+    pub count: usize,
+    /// What one takes with its approach, s.
+    pub each_s: f64,
+    /// What a person flies.
+    pub words: &'static str,
+}
+
+impl NextFlight {
+    /// As a file for the pilot; none where nothing is to be flown.
+    pub fn file(&self) -> Option<FlightPlan> {
+        let one = |chosen: &ChosenManoeuvre| Some((Manoeuvre::named(chosen.name)?, chosen.count));
+        (!self.manoeuvres.is_empty()).then(|| FlightPlan::new(self.manoeuvres.iter().filter_map(one)))
+    }
+}
+
+/// Plans the flight that comes after those of `diagnosed`, of a vehicle that is thought to be `vehicle`.
+pub fn next_flight(diagnosed: &Diagnosed, vehicle: &Vehicle, watch: Watch) -> NextFlight {
+    watch("looking for ties", 0.92);
+    let tied = causes::tied(diagnosed);
+    let is_tied = tied.is_some();
+    let Some(question) = tied.or_else(|| unseen::question(diagnosed)) else {
+        return NextFlight { tied: false, pairs: Vec::new(), manoeuvres: Vec::new(), seconds: 0.0 };
+    };
+    watch("flying every manoeuvre in the simulator", 0.94);
+    let simulation = Simulation::new(diagnosed, &question, vehicle);
+    watch("choosing manoeuvres", 0.97);
+    let pairs = separation::pairs(diagnosed, &question, &simulation);
+    let choice = choose::choose(&pairs, &simulation.kinds, simulation.around_s, LONGEST_PLAN_S.get());
+    report(&question, &pairs, &choice, &simulation, is_tied)
+}
+
+/// What was chosen, in names.
+fn report(question: &Question, pairs: &[Pair], choice: &Choice, simulation: &Simulation, tied: bool) -> NextFlight {
+    let none = vec![0.0; simulation.kinds.len()];
+    let flown = choice.counts.iter().any(|count| *count > 0.0);
+    let one = |(pair, tells): (&Pair, &bool)| {
+        let now = pair.deviations(&none, false);
+        PlannedPair {
+            causes: pair.causes.map(|i| question.causes[i].card.map(|card| card.id)),
+            now,
+            then: if flown { pair.deviations(&choice.counts, true) } else { now },
+            wanted: pair.wanted,
+            why_not: (!tells).then(|| pair.why_not(&simulation.kinds)),
+        }
+    };
+    let of = |(kind, count): (&simulate::FlownKind, &f64)| ChosenManoeuvre {
+        name: kind.kind.name(),
+        count: *count as usize,
+        each_s: kind.seconds,
+        words: kind.kind.words(),
+    };
+    let flown_kinds = simulation.kinds.iter().zip(&choice.counts).filter(|(_, count)| **count > 0.0);
+    let mut manoeuvres: Vec<ChosenManoeuvre> = flown_kinds.map(of).collect();
+    manoeuvres.sort_by_key(|chosen| usize::MAX - chosen.count);
+    NextFlight {
+        tied,
+        pairs: pairs.iter().zip(&choice.tells).map(one).collect(),
+        manoeuvres,
+        seconds: if flown { choice.seconds } else { 0.0 },
+    }
+}

@@ -1,0 +1,57 @@
+//! The shortest flight that tells every pair that can be told: manoeuvres are added by what they bring a second, and
+//! taken away again where all stays told.
+
+use super::separation::Pair;
+use super::simulate::FlownKind;
+use crate::insight::criteria::planned::WORTH_FLYING;
+use rayon::prelude::*;
+
+/// How often each kind is flown.
+pub struct Choice {
+    pub counts: Vec<f64>,
+    /// Whether the flight tells each pair.
+    pub tells: Vec<bool>,
+    /// Length with take-off and landing, s.
+    pub seconds: f64,
+}
+
+/// Chooses among `kinds`; take-off and landing last `around_s`, all together at most `longest_s`.
+pub fn choose(pairs: &[Pair], kinds: &[FlownKind], around_s: f64, longest_s: f64) -> Choice {
+    let hopeful: Vec<&Pair> = pairs.par_iter().filter(|pair| pair.is_ever_told(kinds.len())).collect();
+    let mut counts = vec![0.0; kinds.len()];
+    let length = |counts: &[f64]| around_s + counts.iter().zip(kinds).map(|(n, kind)| n * kind.seconds).sum::<f64>();
+    loop {
+        let open: Vec<(&Pair, f64)> = hopeful.iter().map(|pair| (*pair, pair.deviations(&counts, true))).collect();
+        let open: Vec<(&Pair, f64)> = open.into_iter().filter(|(pair, now)| *now < pair.wanted).collect();
+        let one = |place: usize| {
+            let mut more = counts.clone();
+            more[place] += 1.0;
+            // Each pair counts by the share of what it lacks.
+            let brought =
+                open.iter().map(|(pair, now)| (pair.deviations(&more, true).min(pair.wanted) - now) / pair.wanted);
+            (place, brought.sum::<f64>() / kinds[place].seconds)
+        };
+        let affordable = |place: &usize| length(&counts) + kinds[*place].seconds <= longest_s;
+        let all: Vec<usize> = (0..kinds.len()).filter(affordable).collect();
+        let best = all.into_par_iter().map(one).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
+        match best {
+            Some((place, brought)) if brought * kinds[place].seconds > WORTH_FLYING.get() => counts[place] += 1.0,
+            _ => break,
+        }
+    }
+    let told = |counts: &[f64]| -> Vec<bool> {
+        pairs.par_iter().map(|pair| pair.deviations(counts, true) >= pair.wanted).collect()
+    };
+    let tells = told(&counts);
+    // What was useful at first may not be needed beside what came later.
+    for place in 0..kinds.len() {
+        while counts[place] > 0.0 {
+            counts[place] -= 1.0;
+            if told(&counts) != tells {
+                counts[place] += 1.0;
+                break;
+            }
+        }
+    }
+    Choice { tells, seconds: length(&counts), counts }
+}
