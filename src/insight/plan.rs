@@ -24,7 +24,7 @@ use serde::Serialize;
 use simulate::Simulation;
 
 /// What to fly next, and what it is expected to tell.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct NextFlight {
     /// Whether causes are tied; else it is planned for what the flights so far could not show.
     pub tied: bool,
@@ -34,6 +34,11 @@ pub struct NextFlight {
     pub manoeuvres: Vec<ChosenManoeuvre>,
     /// Length with take-off and landing, s.
     pub seconds: f64,
+    /// Manoeuvres that are flown before the battery is empty.
+    pub on_a_pack: usize,
+    /// Findings that may be several causes, and that no manoeuvre is planned for: only the move of thrust and drag
+    /// against the base vehicle shows them.
+    pub left_out: Vec<&'static str>,
 }
 
 /// Two causes, in standard deviations of their difference over stretches of time.
@@ -41,15 +46,15 @@ pub struct NextFlight {
 pub struct PlannedPair {
     /// Identifiers; no second one where the question is whether the first is there at all.
     pub causes: [Option<&'static str>; 2],
-    /// What the flights so far are expected to tell.
+    /// What the flights so far would tell of them on the average of all noise.
     pub now: f64,
-    /// The same with the planned flight.
+    /// The same of the planned flight alone.
     pub then: f64,
     /// What is wanted.
     pub wanted: f64,
     /// Why no flight of the pilot's manoeuvres tells it, where none does.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub why_not: Option<String>,
+    pub why_not: Option<&'static str>,
 }
 
 /// A manoeuvre of the planned flight.
@@ -71,51 +76,47 @@ impl NextFlight {
         let one = |chosen: &ChosenManoeuvre| Some((Manoeuvre::named(chosen.name)?, chosen.count));
         (!self.manoeuvres.is_empty()).then(|| FlightPlan::new(self.manoeuvres.iter().filter_map(one)))
     }
+
+    /// Takes over what was chosen, in names.
+    fn choose(&mut self, question: &Question, pairs: &[Pair], choice: &Choice, simulation: &Simulation) {
+        let flown = choice.counts.iter().any(|count| *count > 0.0);
+        let one = |(pair, tells): (&Pair, &bool)| PlannedPair {
+            causes: pair.causes.map(|i| question.causes[i].card.map(|card| card.id)),
+            now: pair.so_far(),
+            then: if flown { pair.planned(&choice.counts) } else { 0.0 },
+            wanted: pair.wanted,
+            why_not: (!tells).then(|| pair.why_not(simulation.kinds.len())),
+        };
+        let of = |(kind, count): (&simulate::FlownKind, &f64)| ChosenManoeuvre {
+            name: kind.kind.name(),
+            count: *count as usize,
+            each_s: kind.seconds,
+            words: kind.kind.words(),
+        };
+        self.pairs = pairs.iter().zip(&choice.tells).map(one).collect();
+        let chosen = simulation.kinds.iter().zip(&choice.counts).filter(|(_, count)| **count > 0.0);
+        self.manoeuvres = chosen.map(of).collect();
+        self.manoeuvres.sort_by_key(|chosen| usize::MAX - chosen.count);
+        if let Some(plan) = self.file() {
+            (self.seconds, self.on_a_pack) = simulation.flown(&plan);
+            if self.on_a_pack < plan.order().len() {
+                self.seconds = choice.seconds;
+            }
+        }
+    }
 }
 
 /// Plans the flight that comes after those of `diagnosed`, of a vehicle that is thought to be `vehicle`.
 pub fn next_flight(diagnosed: &Diagnosed, vehicle: &Vehicle, watch: Watch) -> NextFlight {
     watch("looking for ties", 0.92);
     let tied = causes::tied(diagnosed);
-    let is_tied = tied.is_some();
-    let Some(question) = tied.or_else(|| unseen::question(diagnosed)) else {
-        return NextFlight { tied: false, pairs: Vec::new(), manoeuvres: Vec::new(), seconds: 0.0 };
-    };
+    let mut next = NextFlight { tied: tied.is_some(), left_out: causes::left_out(diagnosed), ..NextFlight::default() };
+    let Some(question) = tied.or_else(|| unseen::question(diagnosed)) else { return next };
     watch("flying every manoeuvre in the simulator", 0.94);
     let simulation = Simulation::new(diagnosed, &question, vehicle);
     watch("choosing manoeuvres", 0.97);
     let pairs = separation::pairs(diagnosed, &question, &simulation);
     let choice = choose::choose(&pairs, &simulation.kinds, simulation.around_s, LONGEST_PLAN_S.get());
-    report(&question, &pairs, &choice, &simulation, is_tied)
-}
-
-/// What was chosen, in names.
-fn report(question: &Question, pairs: &[Pair], choice: &Choice, simulation: &Simulation, tied: bool) -> NextFlight {
-    let none = vec![0.0; simulation.kinds.len()];
-    let flown = choice.counts.iter().any(|count| *count > 0.0);
-    let one = |(pair, tells): (&Pair, &bool)| {
-        let now = pair.deviations(&none, false);
-        PlannedPair {
-            causes: pair.causes.map(|i| question.causes[i].card.map(|card| card.id)),
-            now,
-            then: if flown { pair.deviations(&choice.counts, true) } else { now },
-            wanted: pair.wanted,
-            why_not: (!tells).then(|| pair.why_not(&simulation.kinds)),
-        }
-    };
-    let of = |(kind, count): (&simulate::FlownKind, &f64)| ChosenManoeuvre {
-        name: kind.kind.name(),
-        count: *count as usize,
-        each_s: kind.seconds,
-        words: kind.kind.words(),
-    };
-    let flown_kinds = simulation.kinds.iter().zip(&choice.counts).filter(|(_, count)| **count > 0.0);
-    let mut manoeuvres: Vec<ChosenManoeuvre> = flown_kinds.map(of).collect();
-    manoeuvres.sort_by_key(|chosen| usize::MAX - chosen.count);
-    NextFlight {
-        tied,
-        pairs: pairs.iter().zip(&choice.tells).map(one).collect(),
-        manoeuvres,
-        seconds: if flown { choice.seconds } else { 0.0 },
-    }
+    next.choose(&question, &pairs, &choice, &simulation);
+    next
 }

@@ -77,6 +77,13 @@ pub fn tied(diagnosed: &Diagnosed) -> Option<Question> {
     (named > 0 && all.len() > 1).then(|| Question { pairs: pairs(&all), causes: all, free: rest.point.free.clone() })
 }
 
+/// Findings without a name of their own that no fit beside the others holds.
+pub fn left_out(diagnosed: &Diagnosed) -> Vec<&'static str> {
+    let added = |id: &str| diagnosed.selection.added.iter().any(|a| a.card.id == id);
+    let sets = diagnosed.diagnosis.findings.iter().filter(|f| f.status == Status::NamedSet);
+    sets.filter(|f| !added(f.effect)).map(|f| f.effect).collect()
+}
+
 /// All that a finding may be, itself first.
 fn possible(finding: &Finding) -> Vec<&'static str> {
     let rivals = if finding.status == Status::Suspected { &finding.rivals[..] } else { &[] };

@@ -21,14 +21,13 @@ pub fn choose(pairs: &[Pair], kinds: &[FlownKind], around_s: f64, longest_s: f64
     let mut counts = vec![0.0; kinds.len()];
     let length = |counts: &[f64]| around_s + counts.iter().zip(kinds).map(|(n, kind)| n * kind.seconds).sum::<f64>();
     loop {
-        let open: Vec<(&Pair, f64)> = hopeful.iter().map(|pair| (*pair, pair.deviations(&counts, true))).collect();
+        let open: Vec<(&Pair, f64)> = hopeful.iter().map(|pair| (*pair, pair.planned(&counts))).collect();
         let open: Vec<(&Pair, f64)> = open.into_iter().filter(|(pair, now)| *now < pair.wanted).collect();
         let one = |place: usize| {
             let mut more = counts.clone();
             more[place] += 1.0;
             // Each pair counts by the share of what it lacks.
-            let brought =
-                open.iter().map(|(pair, now)| (pair.deviations(&more, true).min(pair.wanted) - now) / pair.wanted);
+            let brought = open.iter().map(|(pair, now)| (pair.planned(&more).min(pair.wanted) - now) / pair.wanted);
             (place, brought.sum::<f64>() / kinds[place].seconds)
         };
         let affordable = |place: &usize| length(&counts) + kinds[*place].seconds <= longest_s;
@@ -39,9 +38,8 @@ pub fn choose(pairs: &[Pair], kinds: &[FlownKind], around_s: f64, longest_s: f64
             _ => break,
         }
     }
-    let told = |counts: &[f64]| -> Vec<bool> {
-        pairs.par_iter().map(|pair| pair.deviations(counts, true) >= pair.wanted).collect()
-    };
+    let told =
+        |counts: &[f64]| -> Vec<bool> { pairs.par_iter().map(|pair| pair.planned(counts) >= pair.wanted).collect() };
     let tells = told(&counts);
     // What was useful at first may not be needed beside what came later.
     for place in 0..kinds.len() {

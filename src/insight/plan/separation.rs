@@ -2,7 +2,7 @@
 //! as they can.
 
 use super::causes::Question;
-use super::simulate::{FlownKind, PieceOf, Simulation};
+use super::simulate::{PieceOf, Simulation};
 use crate::insight::diagnose::Diagnosed;
 use crate::insight::diagnose::channels::CHANNELS;
 use crate::insight::diagnose::numbers::{BEGIN, span};
@@ -15,8 +15,8 @@ use rayon::prelude::*;
 
 /// Length of a stretch of time, s, up to which those of the flights so far are put together.
 const STRETCH_S: f64 = 2.0;
-/// Variance over squares: the noise of a difference of squares of this expectation.
-const NOISE: f64 = 4.0;
+/// Variance over squares of what noise adds to a stretch: to a difference of squares, and to a score.
+const NOISE: [f64; 2] = [4.0, 1.0];
 /// So often flown, what a manoeuvre does not tell it never does.
 const EVER: f64 = 50.0;
 
@@ -32,6 +32,7 @@ pub struct Pair {
 /// Inner products of the columns that make up for a difference, and of the difference, the last.
 struct Way {
     prior: Vec<f64>,
+    noise: f64,
     known: Vec<DMatrix<f64>>,
     /// By stretch of the simulation, with what it is of.
     simulated: Vec<(PieceOf, DMatrix<f64>)>,
@@ -40,51 +41,65 @@ struct Way {
 }
 
 impl Pair {
-    /// Standard deviations over stretches of time by which the flights so far, and `counts` of each kind in a flight
-    /// with or without take-off and landing, are expected to tell the two.
-    pub fn deviations(&self, counts: &[f64], around: bool) -> f64 {
-        self.ways.iter().map(|way| way.deviations(counts, around)).fold(f64::INFINITY, f64::min)
+    /// Standard deviations over stretches of time by which the flights so far are expected to tell the two.
+    pub fn so_far(&self) -> f64 {
+        self.ways.iter().map(Way::so_far).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The same of a flight with `counts` of each kind, beside which the flights so far only hold the other numbers:
+    /// that they do not tell the two is known.
+    pub fn planned(&self, counts: &[f64]) -> f64 {
+        self.ways.iter().map(|way| way.planned(counts)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether any number of manoeuvres tells them.
     pub fn is_ever_told(&self, kinds: usize) -> bool {
-        self.deviations(&vec![EVER; kinds], true) > self.wanted
+        self.planned(&vec![EVER; kinds]) > self.wanted
     }
 
-    /// Why no manoeuvre tells them.
-    pub fn why_not(&self, kinds: &[FlownKind]) -> String {
-        let ever = self.deviations(&vec![EVER; kinds.len()], true);
-        if ever > self.wanted {
-            return "it takes more than one flight".into();
+    /// Why a flight does not tell them.
+    pub fn why_not(&self, kinds: usize) -> &'static str {
+        if self.is_ever_told(kinds) {
+            return "it takes more than one flight";
         }
-        "in every manoeuvre of the pilot they do the same, within the noise of these sensors".into()
+        "the same in every manoeuvre of the pilot, within the noise of these sensors"
     }
 }
 
 impl Way {
-    fn deviations(&self, counts: &[f64], around: bool) -> f64 {
+    fn so_far(&self) -> f64 {
+        let known: Vec<(f64, &DMatrix<f64>)> = self.known.iter().map(|gram| (1.0, gram)).collect();
+        self.told(&known, &known)
+    }
+
+    fn planned(&self, counts: &[f64]) -> f64 {
         let weight = |of: &PieceOf| match of {
             PieceOf::Kind(place) => counts[*place] / self.times[*place],
-            PieceOf::Around => f64::from(u8::from(around)),
+            PieceOf::Around => 1.0,
             PieceOf::Nothing => 0.0,
         };
-        let known = self.known.iter().map(|gram| (1.0, gram));
-        let simulated = self.simulated.iter().map(|(of, gram)| (weight(of), gram)).filter(|(w, _)| *w > 0.0);
-        let all: Vec<(f64, &DMatrix<f64>)> = known.chain(simulated).collect();
+        let next = self.simulated.iter().map(|(of, gram)| (weight(of), gram)).filter(|(w, _)| *w > 0.0);
+        let next: Vec<(f64, &DMatrix<f64>)> = next.collect();
+        let all: Vec<(f64, &DMatrix<f64>)> = self.known.iter().map(|gram| (1.0, gram)).chain(next.clone()).collect();
+        self.told(&all, &next)
+    }
+
+    /// What the stretches `judged` tell where the numbers are those that suit all of `fitted` best; each so many times.
+    fn told(&self, fitted: &[(f64, &DMatrix<f64>)], judged: &[(f64, &DMatrix<f64>)]) -> f64 {
         let n = self.prior.len();
         let mut sum = DMatrix::zeros(n + 1, n + 1);
-        all.iter().for_each(|(w, gram)| sum.zip_apply(*gram, |s, g| *s += w * g));
+        fitted.iter().for_each(|(w, gram)| sum.zip_apply(*gram, |s, g| *s += w * g));
         let rest: Vec<usize> = (0..n).collect();
         let Some(inner) = inverse(&Grams::pick(&sum, &rest, &rest), &self.prior) else { return 0.0 };
         let made_up = inner * Grams::pick(&sum, &rest, &[n]);
         let left = DVector::from_fn(n + 1, |i, _| if i < n { -made_up[(i, 0)] } else { 1.0 });
-        let (mut told, mut noise) = (0.0, 0.0);
-        for (w, gram) in all {
-            let squares = (gram * &left).dot(&left).max(0.0);
+        let (mut told, mut variance) = (0.0, 0.0);
+        for (w, gram) in judged {
+            let squares = (*gram * &left).dot(&left).max(0.0);
             told += w * squares;
-            noise += w * (squares * squares + NOISE * squares);
+            variance += w * (squares * squares + self.noise * squares);
         }
-        told / noise.sqrt().max(1e-300)
+        told / variance.sqrt().max(1e-300)
     }
 }
 
@@ -103,6 +118,7 @@ pub fn pairs(diagnosed: &Diagnosed, question: &Question, simulation: &Simulation
     let next = columns.of(&simulation.problem, &elsewhere, &xs, problem.records.len());
     let simulated = Grams::new(&next.iter().collect::<Vec<_>>(), &simulation.stretches, simulation.pieces.len());
     let times: Vec<f64> = simulation.kinds.iter().map(|kind| kind.times as f64).collect();
+    let is_cause = |i: usize| question.causes[i].card.is_some();
     let way = |truth: usize, fitted: usize| {
         let turn = columns.turn(truth, fitted);
         let rest: Vec<usize> = (0..columns.base.len()).chain(columns.own[fitted].clone()).collect();
@@ -110,13 +126,13 @@ pub fn pairs(diagnosed: &Diagnosed, question: &Question, simulation: &Simulation
         let reduced = |gram: &DMatrix<f64>| reduced(gram, &rest, &turn);
         Way {
             prior: rest.iter().map(trust).collect(),
+            noise: NOISE[usize::from(!is_cause(fitted))],
             known: known.iter().map(reduced).collect(),
             simulated: simulation.pieces.iter().copied().zip(simulated.blocks.iter().map(reduced)).collect(),
             times: times.clone(),
         }
     };
     let one = |&([i, j], wanted): &([usize; 2], f64)| {
-        let is_cause = |i: usize| question.causes[i].card.is_some();
         // Every cause can be nothing: only where it is there it shows.
         let ways = [[i, j], [j, i]].into_iter().filter(|[truth, _]| is_cause(*truth));
         Pair { causes: [i, j], wanted, ways: ways.map(|[truth, fitted]| way(truth, fitted)).collect() }

@@ -54,6 +54,7 @@ pub struct Simulation {
     pub stretches: Vec<Vec<u32>>,
     /// Take-off and landing, s.
     pub around_s: f64,
+    vehicle: Vehicle,
 }
 
 impl Simulation {
@@ -78,7 +79,7 @@ impl Simulation {
             flights.into_iter().map(|(flown, manoeuvres)| (check(&flown.log), manoeuvres)).unzip();
         let problem = problem(logs, base);
         let kinds: Vec<FlownKind> = Manoeuvre::ALL.into_iter().filter_map(|kind| flown(kind, &manoeuvres)).collect();
-        let mut out = Self { problem, kinds, pieces: Vec::new(), stretches: Vec::new(), around_s };
+        let mut out = Self { problem, kinds, pieces: Vec::new(), stretches: Vec::new(), around_s, vehicle };
         out.divide(&manoeuvres);
         out
     }
@@ -119,6 +120,12 @@ impl Simulation {
                 rows.iter().map(one).collect()
             })
             .collect();
+    }
+
+    /// The length of a planned flight, s, and how many of its manoeuvres are flown before the battery is empty.
+    pub fn flown(&self, plan: &FlightPlan) -> (f64, usize) {
+        let (flown, manoeuvres) = in_order(&self.vehicle, &SensorConfig::ideal(), &plan.order(), SEED, plan.enough_s());
+        (flown.seconds, manoeuvres.len())
     }
 
     /// The numbers `x` of the flights so far, for these.
