@@ -3,6 +3,7 @@
 
 use super::separation::Pair;
 use super::simulate::FlownKind;
+use crate::flight::pilot::Manoeuvre;
 use crate::insight::criteria::planned::WORTH_FLYING;
 use rayon::prelude::*;
 
@@ -15,10 +16,14 @@ pub struct Choice {
     pub seconds: f64,
 }
 
+/// What every plan has: where nothing goes any way over ground, the check of the log cannot tell the velocity's frame.
+const ALWAYS: Manoeuvre = Manoeuvre::Circle;
+
 /// Chooses among `kinds`; take-off and landing last `around_s`, all together at most `longest_s`.
 pub fn choose(pairs: &[Pair], kinds: &[FlownKind], around_s: f64, longest_s: f64) -> Choice {
     let hopeful: Vec<&Pair> = pairs.par_iter().filter(|pair| pair.is_ever_told(kinds.len())).collect();
-    let mut counts = vec![0.0; kinds.len()];
+    let always: Vec<f64> = kinds.iter().map(|kind| f64::from(u8::from(kind.kind == ALWAYS))).collect();
+    let mut counts = always.clone();
     let length = |counts: &[f64]| around_s + counts.iter().zip(kinds).map(|(n, kind)| n * kind.seconds).sum::<f64>();
     loop {
         let open: Vec<(&Pair, f64)> = hopeful.iter().map(|pair| (*pair, pair.planned(&counts))).collect();
@@ -43,13 +48,16 @@ pub fn choose(pairs: &[Pair], kinds: &[FlownKind], around_s: f64, longest_s: f64
     let tells = told(&counts);
     // What was useful at first may not be needed beside what came later.
     for place in 0..kinds.len() {
-        while counts[place] > 0.0 {
+        while counts[place] > always[place] {
             counts[place] -= 1.0;
             if told(&counts) != tells {
                 counts[place] += 1.0;
                 break;
             }
         }
+    }
+    if counts == always && !tells.contains(&true) {
+        counts.fill(0.0);
     }
     Choice { tells, seconds: length(&counts), counts }
 }
