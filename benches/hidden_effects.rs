@@ -20,6 +20,8 @@ mod other;
 mod pairs;
 #[path = "hidden_effects/plan.rs"]
 mod plan;
+#[path = "hidden_effects/plan_table.rs"]
+mod plan_table;
 #[path = "hidden_effects/real.rs"]
 mod real;
 #[path = "hidden_effects/run.rs"]
@@ -51,8 +53,8 @@ fn main() {
     }
     if args.plan {
         let planned = each(&args, |number| plan::case(number, &args), plan::Planned::line);
-        plan::print(&planned);
-        return args.csv.iter().for_each(|path| plan::write(path, &planned));
+        plan_table::print(&planned);
+        return args.csv.iter().for_each(|path| plan_table::write(path, &planned));
     }
     let mut judged = Vec::new();
     if args.tier != Tier::Real {

@@ -5,11 +5,9 @@ use crate::answer::{Answer, Finding, Status};
 use crate::args::Args;
 use crate::judge::Judged;
 use crate::run::{self, Folder, LOG, VEHICLE};
-use crate::share::Share;
 use crate::truth::Vehicle;
 use crate::truth::effects::{Hidden, catalogue, log_range};
 use crate::truth::hidden::{Setting, Style, fly_as};
-use racer::base::stats::quantile;
 use racer::flight::Log;
 use racer::flight::pilot::Manoeuvre;
 use racer::flight::planned::FlightPlan;
@@ -30,19 +28,19 @@ const FIRST_S: f64 = 60.0;
 /// A flight, what the program made of it, and what came of its plan.
 #[derive(Debug)]
 pub struct Planned {
-    hidden: Hidden,
-    flown: Vec<&'static str>,
-    before: Result<Answer, String>,
+    pub hidden: Hidden,
+    pub flown: Vec<&'static str>,
+    pub before: Result<Answer, String>,
     /// Where the truth is among what was tied: the plan, its length (s), and what both flights showed.
-    after: Option<Result<After, String>>,
+    pub after: Option<Result<After, String>>,
     seconds: f64,
 }
 
 #[derive(Debug)]
-struct After {
-    plan: String,
-    plan_s: f64,
-    answer: Answer,
+pub struct After {
+    pub plan: String,
+    pub plan_s: f64,
+    pub answer: Answer,
 }
 
 /// Draws, flies and judges case `number`.
@@ -129,27 +127,27 @@ fn planned(args: &Args, folder: &Path, fly: &dyn Fn(&[Manoeuvre], f64) -> Log) -
 }
 
 impl Planned {
-    fn tied(&self) -> bool {
+    pub fn tied(&self) -> bool {
         self.after.is_some()
     }
 
-    fn answer(&self) -> Option<&Answer> {
+    pub fn answer(&self) -> Option<&Answer> {
         Some(&self.after.as_ref()?.as_ref().ok()?.answer)
     }
 
     /// Whether both flights name the right cause, and nothing else, and not as one of several.
-    fn apart(&self) -> bool {
+    pub fn apart(&self) -> bool {
         let Some(answer) = self.answer() else { return false };
         let named: Vec<&Finding> = answer.named().collect();
         !named.is_empty() && named.iter().all(|f| f.status == Status::Named && self.hidden.is(&f.effect))
     }
 
     /// Whether it is named, whatever else is.
-    fn right(&self) -> bool {
+    pub fn right(&self) -> bool {
         self.answer().is_some_and(|a| a.named().any(|f| f.status == Status::Named && self.hidden.is(&f.effect)))
     }
 
-    fn wrong(&self) -> bool {
+    pub fn wrong(&self) -> bool {
         let wrong = |f: &Finding| f.status == Status::Named && !self.hidden.is(&f.effect);
         self.answer().is_some_and(|a| a.named().any(wrong))
     }
@@ -168,61 +166,11 @@ impl Planned {
     }
 }
 
-fn said(answer: &Result<Answer, String>) -> String {
+pub fn said(answer: &Result<Answer, String>) -> String {
     answer.as_ref().map_or_else(|error| format!("FAILED: {error}"), says)
 }
 
-fn says(answer: &Answer) -> String {
+pub fn says(answer: &Answer) -> String {
     let said: Vec<String> = answer.findings.iter().map(Judged::say).collect();
     if said.is_empty() { format!("nothing [{}]", answer.verdict) } else { said.join(" ") }
-}
-
-/// Prints the shares.
-pub fn print(all: &[Planned]) {
-    let tied: Vec<&Planned> = all.iter().filter(|p| p.tied()).collect();
-    println!("\n{} flights, {} of them with tied causes and the truth among them", all.len(), tied.len());
-    let share = |name: &str, yes: &dyn Fn(&Planned) -> bool| {
-        println!("  {name:<52}{}", Share::count(tied.iter().map(|p| yes(p))).text());
-    };
-    share("no plan, or the program failed", &|p| p.answer().is_none());
-    share("told apart: the right cause named, and alone", &Planned::apart);
-    share("the right cause named", &Planned::right);
-    share("a wrong name", &Planned::wrong);
-    let lengths: Vec<f64> = tied.iter().filter_map(|p| Some(p.after.as_ref()?.as_ref().ok()?.plan_s)).collect();
-    if !lengths.is_empty() {
-        println!("planned flight: median {:.0} s, longest {:.0} s", quantile(&lengths, 0.5), quantile(&lengths, 1.0));
-    }
-}
-
-/// Writes every flight as a line.
-///
-/// # Panics
-///
-/// Where the file cannot be written.
-pub fn write(path: &Path, all: &[Planned]) {
-    let mut out = csv::Writer::from_path(path).expect("the CSV");
-    out.write_record(["log", "hidden", "size", "flown", "before", "tied", "plan", "plan_s", "after", "apart"])
-        .expect("a line");
-    for (number, p) in all.iter().enumerate() {
-        let (plan, plan_s, after) = match &p.after {
-            Some(Ok(after)) => (after.plan.clone(), format!("{:.0}", after.plan_s), says(&after.answer)),
-            Some(Err(error)) => (format!("FAILED {error}"), String::new(), String::new()),
-            None => Default::default(),
-        };
-        let flag = |yes: bool| usize::from(yes).to_string();
-        let row = [
-            number.to_string(),
-            p.hidden.id.clone(),
-            format!("{:.5}", p.hidden.size),
-            p.flown.join(" "),
-            said(&p.before),
-            flag(p.tied()),
-            plan,
-            plan_s,
-            after,
-            if p.tied() { flag(p.apart()) } else { String::new() },
-        ];
-        out.write_record(row).expect("a line");
-    }
-    out.flush().expect("the CSV");
 }

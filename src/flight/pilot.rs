@@ -8,16 +8,18 @@ pub mod bounds;
 mod cascade;
 mod deck;
 pub mod manoeuvre;
+mod phase;
 mod plan;
 mod script;
 mod view;
 mod words;
 
 use crate::base::rng::{Philox, RngStream, Sequence};
-use cascade::{Cascade, Demand};
+use cascade::Cascade;
 use deck::Deck;
 pub use manoeuvre::Manoeuvre;
 use nalgebra::Vector3;
+use phase::PilotPhase;
 use plan::Plan;
 use script::Now;
 use view::View;
@@ -47,27 +49,8 @@ pub struct PilotLimits {
     pub empty_v: f64,
 }
 
-/// Time on the ground before taking off, s.
-const GROUND_S: f64 = 2.0;
 /// Length from which a flight is long, s.
 const LONG_S: f64 = 200.0;
-/// Height at which the first manoeuvre is planned, m.
-const TAKEN_OFF_M: f64 = 12.0;
-/// Time kept for the landing, s.
-const LANDING_S: f64 = 16.0;
-/// Height over the ground at which the throttle is closed, m.
-const TOUCH_M: f64 = 0.15;
-
-#[derive(Debug)]
-enum PilotPhase {
-    Ground,
-    TakeOff,
-    /// On the way to where the manoeuvre begins.
-    Approach(Plan),
-    Manoeuvre(Plan),
-    Landing,
-    Landed,
-}
 
 /// See the module.
 #[derive(Debug)]
@@ -166,7 +149,7 @@ impl Pilot {
 
     /// The phase after this one.
     fn next(&mut self, view: &View) -> PilotPhase {
-        let over = view.time > self.limits.seconds - LANDING_S || view.voltage < self.limits.empty_v;
+        let over = phase::is_over(view, &self.limits);
         let next = match std::mem::replace(&mut self.phase, PilotPhase::Landed) {
             PilotPhase::Ground => PilotPhase::TakeOff,
             PilotPhase::Landing | PilotPhase::Landed => PilotPhase::Landed,
@@ -189,27 +172,5 @@ impl Pilot {
         let before = self.begun.iter().filter(|(other, _)| *other == kind).count();
         self.begun.push((kind, view.time));
         Some(Plan::new(kind, before, view, &self.limits, &mut self.rng))
-    }
-}
-
-impl PilotPhase {
-    /// What the phase asks for, `Some(None)` for resting on the ground, or `None` where it is over.
-    fn demand(&mut self, now: &Now, rng: &mut Sequence) -> Option<Option<Demand>> {
-        let view = now.view;
-        let over = view.time > now.limits.seconds - LANDING_S || view.voltage < now.limits.empty_v;
-        let demand = match self {
-            PilotPhase::Ground if now.time < GROUND_S => return Some(None),
-            PilotPhase::Ground => None,
-            PilotPhase::Landed => return Some(None),
-            PilotPhase::Landing if view.position.z < TOUCH_M => None,
-            PilotPhase::Landing => Some(Demand::at(Vector3::new(0.0, 0.0, -(0.5 + 0.4 * view.position.z).min(9.0)))),
-            _ if over => None,
-            PilotPhase::TakeOff if view.position.z > TAKEN_OFF_M => None,
-            PilotPhase::TakeOff => Some(Demand::at(Vector3::new(0.0, 0.0, 4.0))),
-            PilotPhase::Approach(plan) => plan.approach(now),
-            PilotPhase::Manoeuvre(plan) if !plan.low && bounds::leaves(view, now.limits) => None,
-            PilotPhase::Manoeuvre(plan) => plan.script.demand(now, rng),
-        };
-        demand.map(Some)
     }
 }

@@ -7,6 +7,8 @@
 
 mod causes;
 mod choose;
+mod columns;
+mod pair;
 mod separation;
 mod simulate;
 mod unseen;
@@ -19,9 +21,9 @@ use crate::flight::planned::FlightPlan;
 use crate::model::vehicle::Vehicle;
 use causes::Question;
 use choose::Choice;
-use separation::Pair;
+use pair::CausePair;
 use serde::Serialize;
-use simulate::Simulation;
+use simulate::ManoeuvreFlights;
 
 /// What to fly next, and what it is expected to tell.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -78,9 +80,9 @@ impl NextFlight {
     }
 
     /// Takes over what was chosen, in names.
-    fn choose(&mut self, question: &Question, pairs: &[Pair], choice: &Choice, simulation: &Simulation) {
+    fn choose(&mut self, question: &Question, pairs: &[CausePair], choice: &Choice, simulation: &ManoeuvreFlights) {
         let flown = choice.counts.iter().any(|count| *count > 0.0);
-        let one = |(pair, tells): (&Pair, &bool)| PlannedPair {
+        let one = |(pair, tells): (&CausePair, &bool)| PlannedPair {
             causes: pair.causes.map(|i| question.causes[i].card.map(|card| card.id)),
             now: pair.so_far(),
             then: if flown { pair.planned(&choice.counts) } else { 0.0 },
@@ -113,7 +115,7 @@ pub fn next_flight(diagnosed: &Diagnosed, vehicle: &Vehicle, watch: Watch) -> Ne
     let mut next = NextFlight { tied: tied.is_some(), left_out: causes::left_out(diagnosed), ..NextFlight::default() };
     let Some(question) = tied.or_else(|| unseen::question(diagnosed)) else { return next };
     watch("flying every manoeuvre in the simulator", 0.94);
-    let simulation = Simulation::new(diagnosed, &question, vehicle);
+    let simulation = ManoeuvreFlights::new(diagnosed, &question, vehicle);
     watch("choosing manoeuvres", 0.97);
     let pairs = separation::pairs(diagnosed, &question, &simulation);
     let choice = choose::choose(&pairs, &simulation.kinds, simulation.around_s, LONGEST_PLAN_S.get());

@@ -1,7 +1,7 @@
 //! The shortest flight that tells every pair that can be told: manoeuvres are added by what they bring a second, and
 //! taken away again where all stays told.
 
-use super::separation::Pair;
+use super::pair::CausePair;
 use super::simulate::FlownKind;
 use crate::flight::pilot::Manoeuvre;
 use crate::insight::criteria::planned::WORTH_FLYING;
@@ -20,14 +20,14 @@ pub struct Choice {
 const ALWAYS: Manoeuvre = Manoeuvre::Circle;
 
 /// Chooses among `kinds`; take-off and landing last `around_s`, all together at most `longest_s`.
-pub fn choose(pairs: &[Pair], kinds: &[FlownKind], around_s: f64, longest_s: f64) -> Choice {
-    let hopeful: Vec<&Pair> = pairs.par_iter().filter(|pair| pair.is_ever_told(kinds.len())).collect();
+pub fn choose(pairs: &[CausePair], kinds: &[FlownKind], around_s: f64, longest_s: f64) -> Choice {
+    let hopeful: Vec<&CausePair> = pairs.par_iter().filter(|pair| pair.is_ever_told(kinds.len())).collect();
     let always: Vec<f64> = kinds.iter().map(|kind| f64::from(u8::from(kind.kind == ALWAYS))).collect();
     let mut counts = always.clone();
     let length = |counts: &[f64]| around_s + counts.iter().zip(kinds).map(|(n, kind)| n * kind.seconds).sum::<f64>();
     loop {
-        let open: Vec<(&Pair, f64)> = hopeful.iter().map(|pair| (*pair, pair.planned(&counts))).collect();
-        let open: Vec<(&Pair, f64)> = open.into_iter().filter(|(pair, now)| *now < pair.wanted).collect();
+        let open: Vec<(&CausePair, f64)> = hopeful.iter().map(|pair| (*pair, pair.planned(&counts))).collect();
+        let open: Vec<(&CausePair, f64)> = open.into_iter().filter(|(pair, now)| *now < pair.wanted).collect();
         let one = |place: usize| {
             let mut more = counts.clone();
             more[place] += 1.0;

@@ -2,12 +2,12 @@
 
 use super::causes::Question;
 use crate::base::check::Check;
-use crate::flight::fly::{FlownManoeuvre, in_order};
+use crate::flight::fly::{Flown, FlownManoeuvre, in_order};
 use crate::flight::pilot::Manoeuvre;
 use crate::flight::planned::FlightPlan;
 use crate::flight::sensors::SensorConfig;
 use crate::insight::diagnose::numbers::{BEGIN, span};
-use crate::insight::diagnose::problem::Problem;
+use crate::insight::diagnose::problem::{Problem, ResidualRow};
 use crate::insight::diagnose::{Diagnosed, problem};
 use crate::insight::quality::check;
 use crate::model::effects::MODEL;
@@ -25,7 +25,7 @@ const PIECE_S: f64 = 2.0;
 /// Where the pilot's random numbers start.
 const SEED: u64 = 0x9_1a4;
 
-/// What is flown in a stretch of time: a kind, by its place among [`Simulation::kinds`]; none for take-off and landing.
+/// What is flown in a stretch of time: a kind, by its place among [`ManoeuvreFlights::kinds`], or take-off and landing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PieceOf {
     Kind(usize),
@@ -45,7 +45,7 @@ pub struct FlownKind {
 }
 
 /// See the module.
-pub struct Simulation {
+pub struct ManoeuvreFlights {
     pub problem: Problem,
     pub kinds: Vec<FlownKind>,
     /// What each stretch of time is of.
@@ -57,7 +57,7 @@ pub struct Simulation {
     vehicle: Vehicle,
 }
 
-impl Simulation {
+impl ManoeuvreFlights {
     /// Flies every kind in the vehicle that the likeliest cause of `question` makes of `base`.
     pub fn new(diagnosed: &Diagnosed, question: &Question, base: &Vehicle) -> Self {
         let likeliest = question.causes.iter().find(|cause| cause.card.is_some()).unwrap_or(&question.causes[0]);
@@ -71,7 +71,7 @@ impl Simulation {
             .zip(SEED..)
             .map(|(chunk, seed)| in_order(&vehicle, &sensors, chunk, seed, seconds))
             .collect();
-        let around = |(flown, manoeuvres): &(crate::flight::fly::Flown, Vec<FlownManoeuvre>)| {
+        let around = |(flown, manoeuvres): &(Flown, Vec<FlownManoeuvre>)| {
             flown.seconds - manoeuvres.iter().map(|m| m.span_s[1] - m.span_s[0]).sum::<f64>()
         };
         let around_s = flights.first().map_or(0.0, around);
@@ -113,7 +113,7 @@ impl Simulation {
         let rows = self.problem.rows.iter();
         self.stretches = rows
             .map(|rows| {
-                let one = |row: &crate::insight::diagnose::problem::ResidualRow| {
+                let one = |row: &ResidualRow| {
                     let flight = row.flight as usize;
                     of(flight, records[flight].time[row.sample as usize])
                 };
