@@ -22,8 +22,8 @@ const NEXT: &str = "next.mcap";
 const PLAN: &str = "plan.toml";
 const OUT: &str = "out.json";
 /// Kinds of manoeuvres of the first flight, and its length, s.
-const KINDS: [usize; 2] = [2, 5];
-const FIRST_S: f64 = 60.0;
+const KINDS: [usize; 2] = [1, 3];
+const FIRST_S: f64 = 45.0;
 
 /// A flight, what the program made of it, and what came of its plan.
 #[derive(Debug)]

@@ -50,7 +50,7 @@ pub struct PlannedPair {
     pub causes: [Option<&'static str>; 2],
     /// What the flights so far would tell of them on the average of all noise.
     pub now: f64,
-    /// The same of the planned flight alone.
+    /// The same of the planned flight, by itself and together with them, whichever is less.
     pub then: f64,
     /// What is wanted.
     pub wanted: f64,

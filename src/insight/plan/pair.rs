@@ -37,8 +37,8 @@ impl CausePair {
         self.ways.iter().map(Way::so_far).fold(f64::INFINITY, f64::min)
     }
 
-    /// The same of a flight with `counts` of each kind, beside which the flights so far only hold the other numbers:
-    /// that they do not tell the two is known.
+    /// The same of a flight with `counts` of each kind: by itself, for that the flights so far do not tell the two is
+    /// known, and together with them, for a few stretches of theirs may outweigh all others.
     pub fn planned(&self, counts: &[f64]) -> f64 {
         self.ways.iter().map(|way| way.planned(counts)).fold(f64::INFINITY, f64::min)
     }
@@ -72,7 +72,7 @@ impl Way {
         let next = self.simulated.iter().map(|(of, gram)| (weight(of), gram)).filter(|(w, _)| *w > 0.0);
         let next: Vec<(f64, &DMatrix<f64>)> = next.collect();
         let all: Vec<(f64, &DMatrix<f64>)> = self.known.iter().map(|gram| (1.0, gram)).chain(next.clone()).collect();
-        self.told(&all, &next)
+        self.told(&all, &next).min(self.told(&all, &all))
     }
 
     /// What the stretches `judged` tell where the numbers are those that suit all of `fitted` best; each so many times.
