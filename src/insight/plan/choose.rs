@@ -19,6 +19,9 @@ pub struct Choice {
 /// What every plan has: where nothing goes any way over ground, the check of the log cannot tell the velocity's frame.
 const ALWAYS: Manoeuvre = Manoeuvre::Circle;
 
+/// So many of a kind are tried at once: a single one that tells much outweighs all others, and makes the sum less sure.
+const TIMES: [f64; 3] = [1.0, 4.0, 12.0];
+
 /// Chooses among `kinds`; take-off and landing last `around_s`, all together at most `longest_s`.
 pub fn choose(pairs: &[CausePair], kinds: &[FlownKind], around_s: f64, longest_s: f64) -> Choice {
     let hopeful: Vec<&CausePair> = pairs.par_iter().filter(|pair| pair.is_ever_told(kinds.len())).collect();
@@ -28,20 +31,20 @@ pub fn choose(pairs: &[CausePair], kinds: &[FlownKind], around_s: f64, longest_s
     loop {
         let open: Vec<(&CausePair, f64)> = hopeful.iter().map(|pair| (*pair, pair.planned(&counts))).collect();
         let open: Vec<(&CausePair, f64)> = open.into_iter().filter(|(pair, now)| *now < pair.wanted).collect();
-        let one = |place: usize| {
+        let one = |(place, times): (usize, f64)| {
             let mut more = counts.clone();
-            more[place] += 1.0;
+            more[place] += times;
             // Each pair counts by the share of what it lacks.
             let brought = open.iter().map(|(pair, now)| (pair.planned(&more).min(pair.wanted) - now) / pair.wanted);
-            (place, brought.sum::<f64>() / kinds[place].seconds)
+            (place, times, brought.sum::<f64>() / times)
         };
-        let affordable = |place: &usize| length(&counts) + kinds[*place].seconds <= longest_s;
-        let all: Vec<usize> = (0..kinds.len()).filter(affordable).collect();
-        let best = all.into_par_iter().map(one).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
-        match best {
-            Some((place, brought)) if brought * kinds[place].seconds > WORTH_FLYING.get() => counts[place] += 1.0,
-            _ => break,
-        }
+        let affordable = |(place, times): &(usize, f64)| length(&counts) + times * kinds[*place].seconds <= longest_s;
+        let all: Vec<(usize, f64)> = (0..kinds.len()).flat_map(|place| TIMES.map(|times| (place, times))).collect();
+        let tried = all.into_par_iter().filter(affordable).map(one).filter(|(.., each)| *each > WORTH_FLYING.get());
+        let rate = |(place, _, each): &(usize, f64, f64)| each / kinds[*place].seconds;
+        let best = tried.max_by(|a, b| rate(a).total_cmp(&rate(b)).then(b.0.cmp(&a.0)).then(b.1.total_cmp(&a.1)));
+        let Some((place, times, _)) = best else { break };
+        counts[place] += times;
     }
     let told =
         |counts: &[f64]| -> Vec<bool> { pairs.par_iter().map(|pair| pair.planned(counts) >= pair.wanted).collect() };

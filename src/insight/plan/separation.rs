@@ -3,8 +3,8 @@
 
 use super::causes::Question;
 use super::columns::CauseColumns;
-use super::pair::{CausePair, Way};
-use super::simulate::ManoeuvreFlights;
+use super::pair::{CausePair, Stretches, Way};
+use super::simulate::{ManoeuvreFlights, PieceOf};
 use crate::insight::diagnose::Diagnosed;
 use crate::insight::estimate::gram::Grams;
 use nalgebra::{DMatrix, DVector};
@@ -28,19 +28,26 @@ pub fn pairs(diagnosed: &Diagnosed, question: &Question, simulation: &ManoeuvreF
     let xs: Vec<Vec<f64>> = xs.iter().map(|x| simulation.numbers(x)).collect();
     let next = columns.of(&simulation.problem, &elsewhere, &xs, problem.records.len());
     let simulated = Grams::new(&next.iter().collect::<Vec<_>>(), &simulation.stretches, simulation.pieces.len());
-    let times: Vec<f64> = simulation.kinds.iter().map(|kind| kind.times as f64).collect();
     let is_cause = |i: usize| question.causes[i].card.is_some();
     let way = |truth: usize, fitted: usize| {
         let turn = columns.turn(truth, fitted);
         let rest: Vec<usize> = (0..columns.base.len()).chain(columns.own[fitted].clone()).collect();
         let trust = |column: &usize| problem.model.numbers[columns.number(*column)].trust.powi(-2);
-        let reduced = |gram: &DMatrix<f64>| reduced(gram, &rest, &turn);
+        let stretches = |grams: Vec<&DMatrix<f64>>| {
+            let each = grams.into_iter().map(|gram| reduced(gram, &rest, &turn)).collect();
+            Stretches::new(each, rest.len() + 1)
+        };
+        let of = |piece: PieceOf| {
+            let pieces = simulation.pieces.iter().zip(&simulated.blocks).filter(|(of, _)| **of == piece);
+            stretches(pieces.map(|(_, gram)| gram).collect())
+        };
+        let kinds = simulation.kinds.iter().enumerate();
         Way {
             prior: rest.iter().map(trust).collect(),
             noise: NOISE[usize::from(!is_cause(fitted))],
-            known: known.iter().map(reduced).collect(),
-            simulated: simulation.pieces.iter().copied().zip(simulated.blocks.iter().map(reduced)).collect(),
-            times: times.clone(),
+            known: stretches(known.iter().collect()),
+            around: of(PieceOf::Around),
+            kinds: kinds.map(|(place, kind)| (of(PieceOf::Kind(place)), kind.times as f64)).collect(),
         }
     };
     let one = |&([i, j], wanted): &([usize; 2], f64)| {
