@@ -18,6 +18,10 @@ mod judge;
 mod other;
 #[path = "hidden_effects/pairs.rs"]
 mod pairs;
+#[path = "hidden_effects/plan.rs"]
+mod plan;
+#[path = "hidden_effects/plan_table.rs"]
+mod plan_table;
 #[path = "hidden_effects/real.rs"]
 mod real;
 #[path = "hidden_effects/run.rs"]
@@ -46,6 +50,11 @@ fn main() {
         let pairs = each(&args, |number| pairs::case(number, &args), pairs::Pair::line);
         pairs::print(&pairs);
         return args.csv.iter().for_each(|path| pairs::write(path, &pairs));
+    }
+    if args.plan {
+        let planned = each(&args, |number| plan::case(number, &args), plan::Planned::line);
+        plan_table::print(&planned);
+        return args.csv.iter().for_each(|path| plan_table::write(path, &planned));
     }
     let mut judged = Vec::new();
     if args.tier != Tier::Real {

@@ -15,6 +15,7 @@ pub mod motors;
 mod number;
 pub mod open;
 pub mod pilot;
+pub mod planned;
 pub mod rehearse;
 pub mod sensors;
 pub mod series;

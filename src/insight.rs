@@ -4,6 +4,7 @@ pub mod criteria;
 pub mod diagnose;
 pub mod estimate;
 pub mod identify;
+pub mod plan;
 pub mod predict;
 pub mod prepare;
 pub mod quality;

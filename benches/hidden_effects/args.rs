@@ -45,6 +45,10 @@ pub struct Args {
     /// Instead of single logs: pairs of flights of one vehicle of the third truth, half without a change between them
     #[arg(long)]
     pub against: bool,
+    /// Instead of single logs: flights of few manoeuvres, the plans that the program makes of those with tied causes,
+    /// and what both flights show
+    #[arg(long, conflicts_with = "against")]
+    pub plan: bool,
     /// Decides everything that is drawn
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -92,6 +96,9 @@ impl Args {
         let [tier, style] = [format!("{:?}", self.tier), format!("{:?}", self.style)].map(|name| name.to_lowercase());
         let (n, seed, seconds) = (self.n, self.seed, self.seconds);
         let from = if self.from > 0 { format!(" --from {}", self.from) } else { String::new() };
+        if self.plan {
+            return format!("--plan --n {n} --seed {seed}{from}{only}");
+        }
         let only = if self.against { format!("{from} --against{only}") } else { from + &only };
         format!("--n {n} --seed {seed} --tier {tier} --style {style} --seconds {seconds}{only}")
     }

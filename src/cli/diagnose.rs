@@ -1,6 +1,7 @@
 //! `racer diagnose`: what the simulation gets wrong, and why.
 
 mod changes;
+mod next;
 mod output;
 mod text;
 mod thresholds;
@@ -13,6 +14,7 @@ use crate::flight::Options;
 use crate::insight::diagnose::finding::Verdict;
 use crate::insight::diagnose::{Diagnosed, diagnose};
 use crate::insight::identify::{self, identify};
+use crate::insight::plan::next_flight;
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
 use crate::present::run;
@@ -56,9 +58,12 @@ pub struct Args {
     /// New folder for the policies of --retrain [default: retrained]
     #[arg(long, value_name = "DIR", default_value = "retrained", requires = "retrain")]
     retrain_out: PathBuf,
-    /// Only say what these flights could show and tell apart, and what to fly next
+    /// Say what these flights could show and tell apart, and plan the shortest flight that tells what is tied
     #[arg(long)]
     plan: bool,
+    /// New file for the planned flight, which `racer fly --pilot --plan` flies; implies --plan
+    #[arg(long, value_name = "P.toml")]
+    plan_out: Option<PathBuf>,
     /// End with exit code 5 where an effect or unexplained structure is found
     #[arg(long)]
     fail_on_effect: bool,
@@ -89,6 +94,10 @@ With --against, both sets of flights are fitted as one vehicle's. What differs b
 before and after; what both show is the vehicle's, and so is what the model gets wrong of both alike. The rest of the \
 report is about the later flights.
 
+With --plan, every manoeuvre of the pilot is flown in the simulator in the vehicle as identified. The flight that is \
+planned holds those that tell causes apart that take each other's place in these flights, or, where there are none, \
+that show what these flights could not.
+
 Exit code 3 means that a log is damaged and that its readable part was used, 5 that --fail-on-effect or \
 --fail-on-change found something.
 
@@ -97,7 +106,7 @@ Examples:
   racer diagnose flight.mcap --vehicle mine.toml --report diagnosis.html
   racer diagnose flight.mcap --vehicle mine.toml --extend better.toml
   racer diagnose today.mcap --against yesterday.mcap
-  racer diagnose flight.mcap --plan";
+  racer diagnose flight.mcap --plan-out plan.toml";
 
 /// Reads, checks, diagnoses, prints, writes.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
@@ -126,14 +135,20 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let diagnosed = diagnose(logs, &base, &mut watch);
     changes.iter_mut().for_each(|changes| changes.confirm(&diagnosed.diagnosis));
     let diagnosed = Diagnosed { changes, ..diagnosed };
+    let plans = args.plan || args.plan_out.is_some();
+    let next = plans.then(|| next_flight(&diagnosed, &base, &mut watch));
     bar.finish_and_clear();
     let diagnosis = &diagnosed.diagnosis;
     let changed = diagnosed.changes.as_ref();
     if let Some(changes) = changed {
         super::print(&(changes::text(changes) + "\n\nthe later flights by themselves:\n"))?;
     }
-    super::print(&if args.plan { text::plan(diagnosis) } else { text::text(diagnosis) })?;
-    output.write(&diagnosed)?;
+    super::print(&if plans { text::plan(diagnosis) } else { text::text(diagnosis) })?;
+    if let Some(next) = &next {
+        let file = args.plan_out.as_deref().filter(|_| !next.manoeuvres.is_empty());
+        super::print(&(String::from("\n\n") + &next::text(next, file)))?;
+    }
+    output.write(&diagnosed, next.as_ref())?;
     if let Some(policy) = &args.policy {
         super::print(&worth::present(policy, &base, extended(&diagnosed, "--policy")?)?)?;
     }

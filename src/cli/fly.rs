@@ -5,8 +5,9 @@ use crate::base::check::BadInput;
 use crate::base::document::nearest;
 use crate::base::fsio::Reserved;
 use crate::base::lane::Level;
-use crate::flight::fly::{Flown, by_pilot, by_policy, check_pilot};
+use crate::flight::fly::{Flown, LONGEST_S, by_pilot, by_policy, check_pilot, in_order};
 use crate::flight::pilot::Manoeuvre;
+use crate::flight::planned::FlightPlan;
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Stream, write};
 use crate::model::track::Track;
@@ -30,13 +31,16 @@ pub struct Args {
     /// Only these manoeuvres of the pilot, separated by commas
     #[arg(long, value_name = "NAME", value_delimiter = ',', requires = "pilot")]
     manoeuvres: Vec<String>,
+    /// Exactly the manoeuvres of this plan, which `racer diagnose --plan-out` writes, and then land
+    #[arg(long, value_name = "FILE", requires = "pilot", conflicts_with = "manoeuvres")]
+    plan: Option<PathBuf>,
     /// Vehicle: a name or a file [default: the policy's own; seed_class for the pilot]
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<String>,
     /// Track: a name or a file [default: the policy's own]
     #[arg(long, value_name = "NAME|FILE", conflicts_with = "pilot")]
     track: Option<String>,
-    /// Longest flight, s [default: 60; 300 for the pilot]
+    /// Longest flight, s [default: 60; 300 for the pilot; what a plan needs]
     #[arg(long, allow_negative_numbers = true, value_parser = super::values::parse_seconds)]
     seconds: Option<f64>,
     /// Sensors: a name or a file, looked for here, in configs/sensors/ and among the built-in ones
@@ -57,6 +61,7 @@ battery empty. Built-in sensors: ideal, typical.
 Examples:
   racer fly --pilot --out pilot.mcap
   racer fly --pilot --manoeuvres punch,chop --seconds 60 --vehicle mine.toml --out thrust.mcap
+  racer fly --pilot --plan plan.toml --vehicle mine.toml --out next.mcap
   racer fly latest --seconds 30 --sensors ideal --out laps.mcap";
 
 /// The help with the names of all manoeuvres.
@@ -97,7 +102,9 @@ fn fly_policy(args: &Args, policy: &str, sensors: &SensorConfig) -> anyhow::Resu
 
 fn fly_pilot(args: &Args, sensors: &SensorConfig) -> anyhow::Result<Flown> {
     let kinds = args.manoeuvres.iter().map(|name| named(name)).collect::<Result<Vec<_>, _>>()?;
-    let seconds = args.seconds.unwrap_or(300.0);
+    let plan = args.plan.as_deref().map(FlightPlan::read).transpose()?;
+    let needed = plan.as_ref().map_or(300.0, FlightPlan::enough_s);
+    let seconds = args.seconds.unwrap_or(needed.min(LONGEST_S));
     check_pilot("--seconds", seconds)?;
     let vehicle = Vehicle::load(args.vehicle.as_deref().unwrap_or("seed_class"))?;
     let ratio = vehicle.thrust_to_weight();
@@ -105,11 +112,24 @@ fn fly_pilot(args: &Args, sensors: &SensorConfig) -> anyhow::Result<Flown> {
     if !(low..=high).contains(&ratio) {
         tell(&format!("the pilot is made for {low} to {high} times the weight in thrust; this vehicle has {ratio:.1}"));
     }
+    if let Some(plan) = plan {
+        return Ok(fly_plan(&plan, &vehicle, sensors, args.seed, seconds));
+    }
     let flown = by_pilot(&vehicle, sensors, &kinds, args.seed, seconds);
     if flown.seconds < seconds - 20.0 {
         tell(&format!("landed after {:.0} s: the battery was empty", flown.seconds));
     }
     Ok(flown)
+}
+
+fn fly_plan(plan: &FlightPlan, vehicle: &Vehicle, sensors: &SensorConfig, seed: u64, seconds: f64) -> Flown {
+    let order = plan.order();
+    let (flown, manoeuvres) = in_order(vehicle, sensors, &order, seed, seconds);
+    if manoeuvres.len() < order.len() {
+        let (done, all) = (manoeuvres.len(), order.len());
+        tell(&format!("landed after {done} of {all} manoeuvres: the time was up, or the battery empty"));
+    }
+    flown
 }
 
 fn named(name: &str) -> Result<Manoeuvre, BadInput> {

@@ -32,22 +32,56 @@ pub struct Flown {
     pub failure: Option<&'static str>,
 }
 
+/// A manoeuvre that was flown, from the approach to its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlownManoeuvre {
+    pub kind: Manoeuvre,
+    /// From when to when, s.
+    pub span_s: [f64; 2],
+}
+
 /// Longest flight, s.
-const LONGEST_S: f64 = 3600.0;
+pub const LONGEST_S: f64 = 3600.0;
 /// Time that is recorded after the landing, s.
 const AFTER_S: f64 = 1.0;
 
 /// The excitation pilot flies `kinds` of manoeuvres, all where none is named, from the ground until it has landed, for
 /// at most `seconds`. It lands early where the battery is empty before.
 pub fn by_pilot(vehicle: &Vehicle, sensors: &SensorConfig, kinds: &[Manoeuvre], seed: u64, seconds: f64) -> Flown {
+    let mut pilot = Pilot::new(seed, limits(vehicle, seconds)).only(kinds);
+    piloted(vehicle, sensors, &mut pilot, seed, seconds)
+}
+
+/// The excitation pilot flies exactly these manoeuvres in this order, for at most `seconds`, and lands; with what was
+/// flown when. It lands early where the battery is empty before.
+pub fn in_order(
+    vehicle: &Vehicle,
+    sensors: &SensorConfig,
+    order: &[Manoeuvre],
+    seed: u64,
+    seconds: f64,
+) -> (Flown, Vec<FlownManoeuvre>) {
+    let mut pilot = Pilot::new(seed, limits(vehicle, seconds)).in_order(order);
+    let flown = piloted(vehicle, sensors, &mut pilot, seed, seconds);
+    let begun = pilot.begun();
+    let ends = begun.iter().skip(1).map(|(_, from)| *from).chain([pilot.landing_s().unwrap_or(flown.seconds)]);
+    let manoeuvres = begun.iter().zip(ends).map(|(&(kind, from), to)| FlownManoeuvre { kind, span_s: [from, to] });
+    let manoeuvres = manoeuvres.collect();
+    (flown, manoeuvres)
+}
+
+/// What the pilot knows of a vehicle.
+fn limits(vehicle: &Vehicle, seconds: f64) -> PilotLimits {
     let battery = &vehicle.battery;
-    let limits = PilotLimits {
+    PilotLimits {
         max_rate_rad_s: vehicle.max_rates_rad_s(),
         hover_command: vehicle.hover_command(0.5 * (battery.full_v + battery.empty_v)),
         seconds,
         empty_v: battery.empty_v,
-    };
-    let mut pilot = Pilot::new(seed, limits).only(kinds);
+    }
+}
+
+fn piloted(vehicle: &Vehicle, sensors: &SensorConfig, pilot: &mut Pilot, seed: u64, seconds: f64) -> Flown {
     let mut recorder = Recorder::new(vehicle, sensors, seed);
     recorder.rest(true);
     let mut landed_s = 0.0;

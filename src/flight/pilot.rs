@@ -6,17 +6,21 @@
 
 pub mod bounds;
 mod cascade;
+mod deck;
 pub mod manoeuvre;
+mod phase;
 mod plan;
 mod script;
 mod view;
+mod words;
 
 use crate::base::rng::{Philox, RngStream, Sequence};
-use cascade::{Cascade, Demand};
+use cascade::Cascade;
+use deck::Deck;
 pub use manoeuvre::Manoeuvre;
 use nalgebra::Vector3;
+use phase::PilotPhase;
 use plan::Plan;
-use rand::seq::SliceRandom;
 use script::Now;
 use view::View;
 
@@ -45,37 +49,18 @@ pub struct PilotLimits {
     pub empty_v: f64,
 }
 
-/// Time on the ground before taking off, s.
-const GROUND_S: f64 = 2.0;
 /// Length from which a flight is long, s.
 const LONG_S: f64 = 200.0;
-/// Height at which the first manoeuvre is planned, m.
-const TAKEN_OFF_M: f64 = 12.0;
-/// Time kept for the landing, s.
-const LANDING_S: f64 = 16.0;
-/// Height over the ground at which the throttle is closed, m.
-const TOUCH_M: f64 = 0.15;
-
-#[derive(Debug)]
-enum PilotPhase {
-    Ground,
-    TakeOff,
-    /// On the way to where the manoeuvre begins.
-    Approach(Plan),
-    Manoeuvre(Plan),
-    Landing,
-    Landed,
-}
 
 /// See the module.
 #[derive(Debug)]
 pub struct Pilot {
     limits: PilotLimits,
-    kinds: Vec<Manoeuvre>,
-    /// Kinds left of this round, last first.
-    deck: Vec<Manoeuvre>,
-    /// How often each kind was planned.
-    flown: [usize; Manoeuvre::ALL.len()],
+    deck: Deck,
+    /// What was begun, approach and all, and when, s.
+    begun: Vec<(Manoeuvre, f64)>,
+    /// When it began to land, s.
+    landing_s: Option<f64>,
     rng: Sequence,
     cascade: Cascade,
     /// Where the first command was asked for: the origin of its box.
@@ -93,12 +78,14 @@ impl Pilot {
         Self {
             limits,
             // A low hover shows nothing but the ground effect: a short flight has no time for it.
-            kinds: Manoeuvre::ALL
-                .into_iter()
-                .filter(|kind| limits.seconds > LONG_S || *kind != Manoeuvre::LowHover)
-                .collect(),
-            deck: Vec::new(),
-            flown: [0; Manoeuvre::ALL.len()],
+            deck: Deck::rounds(
+                Manoeuvre::ALL
+                    .into_iter()
+                    .filter(|kind| limits.seconds > LONG_S || *kind != Manoeuvre::LowHover)
+                    .collect(),
+            ),
+            begun: Vec::new(),
+            landing_s: None,
             rng: Philox::new(seed).sequence(RngStream::Pilot, 0, 0),
             cascade: Cascade::new(&limits),
             origin: None,
@@ -111,9 +98,25 @@ impl Pilot {
     /// Flies `kinds` only; all of them where none is named.
     pub fn only(mut self, kinds: &[Manoeuvre]) -> Self {
         if !kinds.is_empty() {
-            self.kinds = kinds.to_vec();
+            self.deck = Deck::rounds(kinds.to_vec());
         }
         self
+    }
+
+    /// Flies exactly these, in this order, and lands; earlier where time or battery are over before.
+    pub fn in_order(mut self, order: &[Manoeuvre]) -> Self {
+        self.deck = Deck::once(order);
+        self
+    }
+
+    /// What was begun so far: the kinds, and when the approach to each began, s.
+    pub fn begun(&self) -> &[(Manoeuvre, f64)] {
+        &self.begun
+    }
+
+    /// When it began to land, s.
+    pub fn landing_s(&self) -> Option<f64> {
+        self.landing_s
     }
 
     /// The command for the next 10 ms: roll, pitch, yaw rate and thrust, each in [-1, 1].
@@ -146,53 +149,28 @@ impl Pilot {
 
     /// The phase after this one.
     fn next(&mut self, view: &View) -> PilotPhase {
-        let over = view.time > self.limits.seconds - LANDING_S || view.voltage < self.limits.empty_v;
-        match std::mem::replace(&mut self.phase, PilotPhase::Landed) {
+        let over = phase::is_over(view, &self.limits);
+        let next = match std::mem::replace(&mut self.phase, PilotPhase::Landed) {
             PilotPhase::Ground => PilotPhase::TakeOff,
             PilotPhase::Landing | PilotPhase::Landed => PilotPhase::Landed,
             _ if over => PilotPhase::Landing,
             PilotPhase::Approach(plan) => PilotPhase::Manoeuvre(plan),
             PilotPhase::TakeOff | PilotPhase::Manoeuvre(_) => {
                 self.cascade.settle();
-                PilotPhase::Approach(self.plan(view))
+                self.plan(view).map_or(PilotPhase::Landing, PilotPhase::Approach)
             }
-        }
-    }
-
-    fn plan(&mut self, view: &View) -> Plan {
-        if self.deck.is_empty() {
-            let (mut early, mut late): (Vec<_>, Vec<_>) = self.kinds.iter().partition(|kind| kind.early());
-            early.shuffle(&mut self.rng);
-            late.shuffle(&mut self.rng);
-            // Drawn from the end.
-            self.deck = [late, early].concat();
-        }
-        // The deck was just filled, and never with nothing.
-        let kind = self.deck.pop().unwrap_or(Manoeuvre::RateSteps);
-        let time = &mut self.flown[kind as usize];
-        *time += 1;
-        Plan::new(kind, *time - 1, view, &self.limits, &mut self.rng)
-    }
-}
-
-impl PilotPhase {
-    /// What the phase asks for, `Some(None)` for resting on the ground, or `None` where it is over.
-    fn demand(&mut self, now: &Now, rng: &mut Sequence) -> Option<Option<Demand>> {
-        let view = now.view;
-        let over = view.time > now.limits.seconds - LANDING_S || view.voltage < now.limits.empty_v;
-        let demand = match self {
-            PilotPhase::Ground if now.time < GROUND_S => return Some(None),
-            PilotPhase::Ground => None,
-            PilotPhase::Landed => return Some(None),
-            PilotPhase::Landing if view.position.z < TOUCH_M => None,
-            PilotPhase::Landing => Some(Demand::at(Vector3::new(0.0, 0.0, -(0.5 + 0.4 * view.position.z).min(9.0)))),
-            _ if over => None,
-            PilotPhase::TakeOff if view.position.z > TAKEN_OFF_M => None,
-            PilotPhase::TakeOff => Some(Demand::at(Vector3::new(0.0, 0.0, 4.0))),
-            PilotPhase::Approach(plan) => plan.approach(now),
-            PilotPhase::Manoeuvre(plan) if !plan.low && bounds::leaves(view, now.limits) => None,
-            PilotPhase::Manoeuvre(plan) => plan.script.demand(now, rng),
         };
-        demand.map(Some)
+        if matches!(next, PilotPhase::Landing) {
+            self.landing_s = Some(view.time);
+        }
+        next
+    }
+
+    /// The next manoeuvre; none where all are flown.
+    fn plan(&mut self, view: &View) -> Option<Plan> {
+        let kind = self.deck.next(&mut self.rng)?;
+        let before = self.begun.iter().filter(|(other, _)| *other == kind).count();
+        self.begun.push((kind, view.time));
+        Some(Plan::new(kind, before, view, &self.limits, &mut self.rng))
     }
 }

@@ -13,6 +13,7 @@ pub mod evident;
 pub mod flown;
 pub mod identified;
 pub mod material;
+pub mod planned;
 pub mod replicated;
 pub mod rival;
 pub mod shown;
@@ -81,6 +82,7 @@ pub fn all() -> impl Iterator<Item = &'static Criterion> {
         chance::ALL,
         drifted::ALL,
         changed::ALL,
+        planned::ALL,
         shown::ALL,
     ];
     questions.into_iter().flatten().copied()

@@ -20,6 +20,7 @@ pub mod candidates;
 pub mod cause;
 pub mod channels;
 pub mod contrast;
+pub mod detectable;
 pub mod disambiguate;
 pub mod doubt;
 pub mod drift;
@@ -47,7 +48,6 @@ pub mod numbers;
 pub mod one_motor;
 pub mod oscillation;
 pub mod place;
-pub mod plan;
 pub mod predict;
 pub mod problem;
 pub mod rank;
@@ -143,7 +143,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         (true, true) => Verdict::Clean,
         (true, false) => Verdict::Effects,
     };
-    let (detectable, not_detectable) = plan::judge(&problem, &selection.reach);
+    let (detectable, not_detectable) = detectable::judge(&problem, &selection.reach);
     let extended = match worse {
         Some(worse) => Err(worse),
         None => extend::vehicle(&fitted_kept, &findings),

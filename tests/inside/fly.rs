@@ -2,7 +2,7 @@
 
 use racer::base::lane::Level;
 use racer::base::rng::{Philox, RngStream};
-use racer::flight::fly::{by_pilot, by_policy};
+use racer::flight::fly::{by_pilot, by_policy, in_order};
 use racer::flight::pilot::Manoeuvre;
 use racer::flight::sensors::SensorConfig;
 use racer::learn::nn::Network;
@@ -40,6 +40,23 @@ fn the_pilot_takes_off_flies_and_lands_before_the_battery_is_empty() {
     }
     let record = log.vehicle.max_rate_rad_s.expect("recorded");
     assert!(log.setpoint.rows.iter().all(|row| row[3] >= 0.0 && row[3] <= 1.0 && row[0].abs() <= record[0]));
+}
+
+#[test]
+fn the_pilot_flies_exactly_what_is_planned_and_lands() {
+    let vehicle = seed_class();
+    let order = [Manoeuvre::Punch, Manoeuvre::Dive, Manoeuvre::Punch, Manoeuvre::LowHover];
+    let (flown, manoeuvres) = in_order(&vehicle, &sensors("ideal"), &order, 3, 300.0);
+    assert_eq!(manoeuvres.iter().map(|m| m.kind).collect::<Vec<_>>(), order);
+    assert!(manoeuvres.windows(2).all(|pair| pair[0].span_s[1] == pair[1].span_s[0]), "{manoeuvres:?}");
+    let [_, landing] = manoeuvres[3].span_s;
+    assert!(flown.seconds > landing && flown.seconds < landing + 25.0, "{} s, {manoeuvres:?}", flown.seconds);
+    let last = flown.log.odometry.rows.last().expect("samples");
+    assert!(last[2] == 0.0 && last[7..] == [0.0; 3], "{last:?}");
+    let fullest = flown.log.setpoint.rows.iter().map(|row| row[3]).fold(0.0, f64::max);
+    assert_eq!(fullest, 1.0, "a punch is at full throttle");
+    // Too short a flight lands before it is done.
+    assert!(in_order(&vehicle, &sensors("ideal"), &order, 3, 45.0).1.len() < order.len());
 }
 
 /// What is felt is what moves: integrated specific force and gravity give the recorded velocities.

@@ -20,6 +20,7 @@ mod mappings;
 mod mcap;
 mod older;
 mod operations;
+mod plan;
 mod policy_file;
 mod python;
 mod quality;

@@ -12,6 +12,7 @@ mod import;
 mod kills;
 mod library;
 mod pilot;
+mod plan;
 mod predict;
 mod rehearse;
 mod show;

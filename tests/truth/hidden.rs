@@ -67,20 +67,11 @@ impl World {
 
 /// The log of a flight of `vehicle` with all of `hidden` in it.
 pub fn fly(vehicle: &Vehicle, hidden: &[Hidden], setting: &Setting) -> Log {
-    let world = World::new(vehicle, hidden);
-    // Who flies knows the vehicle without what is hidden, and lands by the clock: a sagging pack is no empty one.
-    let limits = PilotLimits { empty_v: 0.0, ..super::limits(vehicle, setting.seed, setting.seconds) };
-    let mut time_s = 0.0;
     match setting.style {
-        Style::Excited => {
-            let mut pilot = Pilot::new(setting.seed, limits);
-            record(&world, setting, &mut |craft| {
-                let command = pilot.command(&seen(craft, &world, time_s));
-                time_s += CONTROL_S;
-                command
-            })
-        }
+        Style::Excited => fly_as(vehicle, hidden, setting, |pilot| pilot),
         Style::Race => {
+            let world = World::new(vehicle, hidden);
+            let mut time_s = 0.0;
             let mut racer = Racer::new(vehicle, setting.seed);
             record(&world, setting, &mut |craft| {
                 let command = racer.command(&seen(craft, &world, time_s));
@@ -89,6 +80,20 @@ pub fn fly(vehicle: &Vehicle, hidden: &[Hidden], setting: &Setting) -> Log {
             })
         }
     }
+}
+
+/// The same by the pilot that `told` makes of the one that excites everything.
+pub fn fly_as(vehicle: &Vehicle, hidden: &[Hidden], setting: &Setting, told: impl FnOnce(Pilot) -> Pilot) -> Log {
+    let world = World::new(vehicle, hidden);
+    // Who flies knows the vehicle without what is hidden, and lands by the clock: a sagging pack is no empty one.
+    let limits = PilotLimits { empty_v: 0.0, ..super::limits(vehicle, setting.seed, setting.seconds) };
+    let mut pilot = told(Pilot::new(setting.seed, limits));
+    let mut time_s = 0.0;
+    record(&world, setting, &mut |craft| {
+        let command = pilot.command(&seen(craft, &world, time_s));
+        time_s += CONTROL_S;
+        command
+    })
 }
 
 fn seen(craft: &Craft, world: &World, time_s: f64) -> Seen {

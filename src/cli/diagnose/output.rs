@@ -8,6 +8,7 @@ use crate::cli::tell;
 use crate::insight::diagnose::Diagnosed;
 use crate::insight::diagnose::against::Changes;
 use crate::insight::diagnose::finding::Diagnosis;
+use crate::insight::plan::NextFlight;
 use crate::present::report;
 use crate::present::report::diagnosis::DiagnosisFigures;
 use serde::Serialize;
@@ -19,23 +20,34 @@ pub struct OutputFiles<'a> {
     vehicle: Option<Reserved>,
     page: Option<Reserved>,
     figures: Option<&'a Path>,
+    plan: Option<Reserved>,
 }
 
 impl<'a> OutputFiles<'a> {
     pub fn new(args: &'a Args) -> Result<Self, BadInput> {
         let reserve = |path: &Option<_>| path.as_deref().map(Reserved::new).transpose();
         let (json, vehicle, page) = (reserve(&args.json)?, reserve(&args.extend)?, reserve(&args.report)?);
+        let plan = reserve(&args.plan_out)?;
         args.svg.as_deref().map(fsio::new_folder).transpose()?;
-        Ok(Self { json, vehicle, page, figures: args.svg.as_deref() })
+        Ok(Self { json, vehicle, page, figures: args.svg.as_deref(), plan })
     }
 
-    /// Writes them.
-    pub fn write(self, diagnosed: &Diagnosed) -> anyhow::Result<()> {
+    /// Writes them; `next` is the planned flight, where one was asked for.
+    pub fn write(self, diagnosed: &Diagnosed, next: Option<&NextFlight>) -> anyhow::Result<()> {
         show(diagnosed, self.page, self.figures)?;
         if let Some(json) = self.json {
             let (changes, diagnosis) = (diagnosed.changes.as_ref(), &diagnosed.diagnosis);
-            let document = encode::json("the diagnosis", &DiagnosisFile { changes, diagnosis })?;
+            let document = encode::json("the diagnosis", &DiagnosisFile { changes, plan: next, diagnosis })?;
             tell(&format!("figures in {}", json.write(document.as_bytes())?.display()));
+        }
+        if let Some((file, next)) = self.plan.zip(next) {
+            match next.file() {
+                Some(plan) => {
+                    let written = file.write(encode::toml("the plan", &plan)?.as_bytes())?;
+                    tell(&format!("plan in {0}: racer fly --pilot --plan {0}", written.display()));
+                }
+                None => tell("no plan is written: there is nothing to fly that tells more"),
+            }
         }
         if let Some(file) = self.vehicle {
             let vehicle = super::extended(diagnosed, "--extend")?;
@@ -51,6 +63,8 @@ impl<'a> OutputFiles<'a> {
 struct DiagnosisFile<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     changes: Option<&'a Changes>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    plan: Option<&'a NextFlight>,
     #[serde(flatten)]
     diagnosis: &'a Diagnosis,
 }

@@ -84,6 +84,21 @@ impl Whitener {
         })
     }
 
+    /// The same noise on the rows of other flights, none of them an outlier. Channels whose noise is not known are left
+    /// out.
+    pub fn on(&self, rows: &[Vec<ResidualRow>; CHANNELS]) -> Self {
+        let weight = std::array::from_fn(|c| {
+            let known = self.weight[c].iter().any(|w| *w > 0.0);
+            let mut run = 0;
+            let one = |row: &ResidualRow| {
+                run = if row.follows { run + 1 } else { 0 };
+                if known && run >= self.filter[c].0.len() { 1.0 } else { 0.0 }
+            };
+            rows[c].iter().map(one).collect()
+        });
+        Whitener { filter: self.filter.clone(), weight }
+    }
+
     /// The same with outliers at their full weight.
     pub fn unweighted(&self) -> Self {
         let mut copy = self.clone();
