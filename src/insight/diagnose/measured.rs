@@ -13,6 +13,12 @@ pub fn measured(record: &FlightRecord, gravity: f64) -> [Vec<f64>; CHANNELS] {
     }
     let made = out[FORCE + 2].iter_mut().zip(&record.mixed).filter(|(_, mixed)| **mixed);
     made.for_each(|(force, _)| *force = f64::NAN);
+    // Without attitude nothing is known of wind, or of a velocity that lags.
+    for (bin, &[from, to]) in record.bins.iter().enumerate() {
+        if (from..to).any(|i| !record.axes[i][0][0].is_finite()) {
+            (FORCE..FORCE + 3).for_each(|c| out[c][bin] = f64::NAN);
+        }
+    }
     for &[from, to] in &record.windows {
         let [w, a, b, c] = record.attitude[from];
         let turn = rotation_vector(compose([w, -a, -b, -c], record.attitude[to]));
