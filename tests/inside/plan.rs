@@ -12,16 +12,18 @@ use racer::insight::quality::check;
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 
-const SEED: u64 = 61;
-const HIDDEN: (&str, f64) = ("rate_thrust_coupling", 0.008);
-/// None of these turns fast at a steady throttle for long.
-const FEW: [Manoeuvre; 4] = [Manoeuvre::Dive, Manoeuvre::PitchSteps, Manoeuvre::ThrottleSteps, Manoeuvre::RollDoublets];
+/// A case of `cargo bench --bench hidden_effects -- --plan`.
+const SEED: u64 = 1_818_153_725_388_374_308;
+const FLIGHTS: [u64; 2] = [5_923_431_025_493_652_756, 14_296_740_061_528_456_664];
+const HIDDEN: (&str, f64) = ("voltage_sag", 2.138_662);
+/// The throttle is closed or falls, and hardly anything else is flown.
+const FEW: [Manoeuvre; 3] = [Manoeuvre::Chop, Manoeuvre::RampDown, Manoeuvre::YawSpin];
 
 fn flown(seed: u64, seconds: f64, told: impl FnOnce(Pilot) -> Pilot) -> Log {
     let vehicle = Vehicle::draw(SEED);
     let mut rng = StdRng::seed_from_u64(SEED);
     let hidden = [Hidden::sized(HIDDEN.0, HIDDEN.1, &vehicle, &mut rng)];
-    let setting = Setting { seed, seconds, noise: 1.0, imu_hz: 500.0, style: Style::Excited };
+    let setting = Setting { seed, seconds, noise: 0.676, imu_hz: 326.0, style: Style::Excited };
     fly_as(&vehicle, &hidden, &setting, told)
 }
 
@@ -36,7 +38,7 @@ fn is_open(finding: &Finding) -> bool {
 
 #[test]
 fn the_planned_flight_tells_what_was_tied() {
-    let before = flown(1, 60.0, |pilot| pilot.only(&FEW));
+    let before = flown(FLIGHTS[0], 45.0, |pilot| pilot.only(&FEW));
     let first = diagnosed(&[&before]);
     let findings = &first.diagnosis.findings;
     assert!(findings.iter().any(is_open), "{findings:#?}");
@@ -47,11 +49,10 @@ fn the_planned_flight_tells_what_was_tied() {
     let told = next.pairs.iter().filter(|pair| pair.then >= pair.wanted && pair.now < pair.wanted);
     assert!(told.count() > 0, "{next:#?}");
     let plan = next.file().expect("something to fly");
-    // A fast turn is what the effect is about.
-    let turns = |name: &str| ["flip", "steps", "doublets", "spin"].iter().any(|part| name.contains(part));
-    assert!(plan.manoeuvre.iter().any(|m| turns(&m.name) && m.count > 1), "{plan:?}");
+    let other = |name: &str| !FEW.iter().any(|kind| kind.name() == name) && name != "circle";
+    assert!(plan.manoeuvre.iter().any(|m| other(&m.name)), "{plan:?}");
 
-    let after = flown(2, 1.3 * next.seconds + 20.0, |pilot| pilot.in_order(&plan.order()));
+    let after = flown(FLIGHTS[1], 1.3 * next.seconds + 20.0, |pilot| pilot.in_order(&plan.order()));
     let both = diagnosed(&[&before, &after]).diagnosis.findings;
     let named: Vec<(&str, Status)> =
         both.iter().filter(|f| f.status != Status::Suspected).map(|f| (f.effect, f.status)).collect();
