@@ -16,17 +16,8 @@ pub struct Choice {
     pub seconds: f64,
 }
 
-/// What every plan has once. A diagnosis of several flights predicts each by numbers that are fitted to the others, so
-/// that each has to tell the compact model's by itself; and where nothing goes any way over ground, the check of the log
-/// cannot tell the velocity's frame.
-const ALWAYS: [Manoeuvre; 6] = [
-    Manoeuvre::RateSteps,
-    Manoeuvre::ThrottleSteps,
-    Manoeuvre::RampDown,
-    Manoeuvre::Forward,
-    Manoeuvre::Climb,
-    Manoeuvre::Circle,
-];
+/// What every plan has: where nothing goes any way over ground, the check of the log cannot tell the velocity's frame.
+const ALWAYS: Manoeuvre = Manoeuvre::Circle;
 
 /// So many of a kind are tried at once: a single one that tells much outweighs all others, and makes the sum less sure.
 const TIMES: [f64; 3] = [1.0, 4.0, 12.0];
@@ -34,7 +25,7 @@ const TIMES: [f64; 3] = [1.0, 4.0, 12.0];
 /// Chooses among `kinds`; take-off and landing last `around_s`, all together at most `longest_s`.
 pub fn choose(pairs: &[CausePair], kinds: &[FlownKind], around_s: f64, longest_s: f64) -> Choice {
     let hopeful: Vec<&CausePair> = pairs.par_iter().filter(|pair| pair.is_ever_told(kinds.len())).collect();
-    let always: Vec<f64> = kinds.iter().map(|kind| f64::from(u8::from(ALWAYS.contains(&kind.kind)))).collect();
+    let always: Vec<f64> = kinds.iter().map(|kind| f64::from(u8::from(kind.kind == ALWAYS))).collect();
     let mut counts = always.clone();
     let length = |counts: &[f64]| around_s + counts.iter().zip(kinds).map(|(n, kind)| n * kind.seconds).sum::<f64>();
     loop {
