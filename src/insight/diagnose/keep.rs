@@ -1,7 +1,9 @@
 //! What of a selection is kept: the extended vehicle's part, in which every name has to hold by itself.
 
+use super::channels::FORCE;
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
+use super::numbers::{MAX_RATE, TAU};
 use super::problem::Problem;
 use super::replication::stretches;
 use super::select::Selection;
@@ -11,10 +13,11 @@ use crate::model::effects::{self, Card, Role};
 /// What of the selection is kept: what is only suspected is no part of the extended vehicle, nor what is not sure
 /// without that, nor what makes unseen flight worse. With the reason where what is left is worse for all that.
 pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> (Selection, Option<String>) {
+    let mut given: Vec<usize> = Vec::new();
     loop {
         let suspected: Vec<&str> =
             findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
-        let kept = selection.without(problem, &suspected);
+        let kept = selection.without(problem, &suspected).as_given(problem, &given);
         let fitted = FittedSelection::new(problem, &kept);
         if let Some(finding) = leaning(&fitted, findings) {
             finding.suspect("its size is not sure without what is only suspected".into());
@@ -27,10 +30,21 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
         let blamed = worse.blamed.map(|card| card.id);
         let finding = findings.iter_mut().find(|f| Some(f.effect) == blamed && f.status != Status::Suspected);
         let Some(finding) = finding else {
+            // No effect does it: the flights do not tell the vehicle's own numbers.
+            let own = own(worse.number);
+            if own.clone().any(|k| kept.point.free.contains(&k)) {
+                given.extend(own);
+                continue;
+            }
             return (kept, Some(format!("on flight that was not used for fitting it predicts {rise}")));
         };
         finding.suspect(format!("on flight that was not used for fitting it makes {rise}"));
     }
+}
+
+/// The compact model's numbers that a rate follows its command by; nothing of other channels.
+fn own(channel: usize) -> impl Iterator<Item = usize> + Clone {
+    [TAU.start, MAX_RATE.start].into_iter().filter(move |_| channel < FORCE).map(move |start| start + channel)
 }
 
 /// Sizes in the report are those of the extended vehicle. Lost commands are counted, and not fitted.

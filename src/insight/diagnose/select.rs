@@ -54,6 +54,20 @@ impl Selection {
     }
 }
 
+impl Selection {
+    /// The same with these numbers as the base vehicle has them, fitted again.
+    pub fn as_given(self, problem: &Problem, numbers: &[usize]) -> Self {
+        let mut free = self.point.free.clone();
+        free.retain(|k| !numbers.contains(k));
+        if free.len() == self.point.free.len() {
+            return self;
+        }
+        let mut x = self.point.x.clone();
+        numbers.iter().for_each(|&k| x[k] = problem.model.base[k]);
+        Self { point: fit::fit(problem, &self.whitener, &x, &free), ..self }
+    }
+}
+
 /// An added effect.
 #[derive(Clone, Debug)]
 pub struct Added {

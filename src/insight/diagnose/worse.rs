@@ -1,7 +1,7 @@
 //! Never worse: whether the extended model predicts unseen flight worse, in any channel, than the vehicle that was
 //! given or the compact model fitted to the same flights; and which effect does it.
 
-use super::channels::{CHANNELS, FORCE, NAMES, TURN, VOLTAGE};
+use super::channels::{CHANNELS, FORCE, NAMES, TURN, VOLTAGE, kind};
 use super::fit::FitPoint;
 use super::fitted::FittedSelection;
 use super::numbers::DISCHARGE;
@@ -13,6 +13,8 @@ use crate::model::effects::{Card, MODEL};
 
 /// A channel that is predicted worse on unseen flight.
 pub struct Worse {
+    /// Its place among the channels.
+    pub number: usize,
     pub channel: &'static str,
     /// Share by which its error rises.
     pub by: f64,
@@ -75,10 +77,11 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
         Some((c, against.max_by(f64::total_cmp)?))
     });
     let (c, by) = rises.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Worse { channel: NAMES[c].0, by, blamed: blamed(fitted, c) })
+    Some(Worse { number: c, channel: NAMES[c].0, by, blamed: blamed(fitted, c) })
 }
 
-/// The effect of the simulator without which channel `c` has the least error on unseen flight, less than with it.
+/// The effect of the simulator that shows in channel `c` and without which that has the least error on unseen flight,
+/// less than with it.
 fn blamed(fitted: &FittedSelection, c: usize) -> Option<&'static Card> {
     let problem = fitted.problem;
     let total = |x: &[f64], out: &[bool]| {
@@ -86,7 +89,8 @@ fn blamed(fitted: &FittedSelection, c: usize) -> Option<&'static Card> {
         add(problem, &mut sums, &problem.residuals(&problem.predict(x)), out);
         sums[c].iter().sum::<f64>()
     };
-    let cards: Vec<&'static Card> = MODEL.into_iter().filter(|card| !fitted.places(card).is_empty()).collect();
+    let shows = |card: &&Card| card.channels.contains(&kind(c)) && !fitted.places(card).is_empty();
+    let cards: Vec<&'static Card> = MODEL.into_iter().filter(shows).collect();
     let mut saved = vec![0.0; cards.len()];
     for out in parts(problem) {
         let x = without(problem, fitted.point(), &fitted.grams, &out);
