@@ -1,6 +1,6 @@
 //! Turning about two axes pushes the third: w_x' += k w_y w_z, w_y' -= k w_z w_x, less what the rate loop holds.
 
-use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, CommandSetpoint};
+use super::{Card, CommandSetpoint, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct GyroscopicCoupling;

@@ -1,7 +1,9 @@
 //! The whole IMU stamped late: gyro and accelerometer at t are those of t - d. Against the commands both are late by
 //! the same time, and so is the odometry once its clock has been moved to theirs.
 
-use super::{Card, CompactNumber, Effect, EffectKind, EffectParameter, Evidence, Quantity, ResidualChannel, Role, Twin};
+use super::{
+    Card, CompactNumber, Effect, EffectKind, EffectParameter, Evidence, Quantity, ResidualChannel, Role, Twin,
+};
 
 pub struct ImuLate;
 

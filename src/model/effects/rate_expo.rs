@@ -1,6 +1,6 @@
 //! Curved stick response: a becomes (1 - e) a + e a^3.
 
-use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, CommandSetpoint};
+use super::{Card, CommandSetpoint, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct RateExpo;

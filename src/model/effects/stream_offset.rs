@@ -1,6 +1,8 @@
 //! The gyro is stamped late: a sample of time t carries the time t + offset.
 
-use super::{Card, CompactNumber, Effect, EffectKind, EffectParameter, Evidence, Quantity, ResidualChannel, Role, Twin};
+use super::{
+    Card, CompactNumber, Effect, EffectKind, EffectParameter, Evidence, Quantity, ResidualChannel, Role, Twin,
+};
 
 pub struct StreamOffset;
 

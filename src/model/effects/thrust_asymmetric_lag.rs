@@ -11,9 +11,13 @@ impl Effect for ThrustAsymmetricLag {
         name: "spin-down slower than spin-up",
         sentence: "thrust dies away more slowly after a throttle cut than it builds up after a punch",
         kind: EffectKind::Timing,
-        parameters: &[
-            EffectParameter { name: "difference", unit: "s", low: -0.02, high: 0.08, typical: [0.004, 0.025] },
-        ],
+        parameters: &[EffectParameter {
+            name: "difference",
+            unit: "s",
+            low: -0.02,
+            high: 0.08,
+            typical: [0.004, 0.025],
+        }],
         writes: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Force],
         signature: "vertical specific force lags after throttle cuts, not after punches",

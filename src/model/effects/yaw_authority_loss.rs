@@ -1,7 +1,7 @@
 //! Yaw that fades where the motors saturate: the yaw command is scaled by 1 - k sat(s), sat rising from 0 at s = 0.8
 //! to 1 at 1.
 
-use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, CommandSetpoint};
+use super::{Card, CommandSetpoint, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
 
 pub struct YawAuthorityLoss;
