@@ -16,6 +16,10 @@ criteria! {
     /// Rates behind their setpoints, summed over the axes as shares of the largest setpoints, below which a mixer
     /// leaves the collective alone.
     CALM = 0.1, Assumed("Betaflight, rehearsed: mean motor output off by 0.00 to 0.02 below, up to 0.4 above");
+    /// Share of the range of the motors' outputs within which one is at an end of it.
+    MOTOR_END_SHARE = 0.01, Assumed("outputs at an end are exactly there but for rounding");
+    /// For so long after one was there, rotors and rates are still on their way, s.
+    MIXER_SETTLING_S = 0.2, Assumed("six time constants of slow rotors; after 0.1 s 1 m/s2 was left of 30");
     /// Share of a flight that has to be calm for what is not to be left out.
     CALM_LEAST = 0.1, Assumed("a tenth of five minutes is as much flight as identification asks for");
     /// Rate setpoints beyond the full-stick rate that was taken for the vehicle's, as a share, that contradict it.

@@ -32,6 +32,18 @@ pub struct Selection {
 }
 
 impl Selection {
+    /// The same with these numbers as the base vehicle has them, fitted again.
+    pub fn as_given(self, problem: &Problem, numbers: &[usize]) -> Self {
+        let mut free = self.point.free.clone();
+        free.retain(|k| !numbers.contains(k));
+        if free.len() == self.point.free.len() {
+            return self;
+        }
+        let mut x = self.point.x.clone();
+        numbers.iter().for_each(|&k| x[k] = problem.model.base[k]);
+        Self { point: fit::fit(problem, &self.whitener, &x, &free), ..self }
+    }
+
     /// The same without the effects `ids` and without anything bent, fitted again.
     pub fn without(&self, problem: &Problem, ids: &[&str]) -> Self {
         let gone = |a: &Added| ids.contains(&a.card.id);
@@ -51,20 +63,6 @@ impl Selection {
             reach: Vec::new(),
             others: Vec::new(),
         }
-    }
-}
-
-impl Selection {
-    /// The same with these numbers as the base vehicle has them, fitted again.
-    pub fn as_given(self, problem: &Problem, numbers: &[usize]) -> Self {
-        let mut free = self.point.free.clone();
-        free.retain(|k| !numbers.contains(k));
-        if free.len() == self.point.free.len() {
-            return self;
-        }
-        let mut x = self.point.x.clone();
-        numbers.iter().for_each(|&k| x[k] = problem.model.base[k]);
-        Self { point: fit::fit(problem, &self.whitener, &x, &free), ..self }
     }
 }
 

@@ -105,16 +105,16 @@ impl Trials<'_> {
     fn best(&self, j: usize) -> Trial {
         let Direction { card, start } = &self.found[j].direction;
         let before = self.point.total();
-        let mut starts = vec![self.from(&self.point.x, card, start, 1.0)];
+        let mut starts = vec![self.start(&self.point.x, card, start, 1.0)];
         if card.parameters[0].unit == "s" {
             // Late signals fit at more than one delay.
             for (i, candidate) in self.found.iter().enumerate().filter(|(_, c)| c.card().id == card.id) {
                 let start = &candidate.direction.start;
                 if i != j {
-                    starts.push(self.from(&self.point.x, card, start, 1.0));
+                    starts.push(self.start(&self.point.x, card, start, 1.0));
                 }
                 if !card.absorbed_by.is_empty() {
-                    starts.push(self.from(&self.shortened(card, start[0].1), card, start, 1.0));
+                    starts.push(self.start(&self.shortened(card, start[0].1), card, start, 1.0));
                 }
             }
         }
@@ -122,17 +122,17 @@ impl Trials<'_> {
         if best.total() > before {
             // Too far away: from a size too small to matter, downhill.
             let small = 0.2 * card.parameters[0].typical[0] / start[0].1.abs();
-            best = self.fitted(card, &[self.from(&self.point.x, card, start, small)]);
+            best = self.fitted(card, &[self.start(&self.point.x, card, start, small)]);
         }
         let gain = before - best.total();
         Trial { card, point: best, gain }
     }
 
-    /// The numbers `x` with the effect at `shrink` times the sizes `start`.
-    fn from(&self, x: &[f64], card: &Card, start: &[(usize, f64)], shrink: f64) -> Vec<f64> {
+    /// The numbers `x` with the effect at `shrink` times `sizes`.
+    fn start(&self, x: &[f64], card: &Card, sizes: &[(usize, f64)], shrink: f64) -> Vec<f64> {
         let mut x = x.to_vec();
         span(card).for_each(|k| x[k] = 0.0);
-        start.iter().for_each(|(k, value)| x[*k] = value * shrink);
+        sizes.iter().for_each(|(k, value)| x[*k] = value * shrink);
         x
     }
 

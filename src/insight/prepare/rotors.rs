@@ -5,7 +5,7 @@ use crate::flight::series::period;
 use crate::flight::spans::{Span, joined};
 use crate::flight::{Log, MOTORS, Stream};
 use crate::insight::criteria::consistent::{ROTOR_COMMAND_ROWS, ROTOR_COMMAND_SHARE};
-use crate::insight::criteria::identified::ROTOR_RATE_HZ;
+use crate::insight::criteria::identified::{MIXER_SETTLING_S, MOTOR_END_SHARE, ROTOR_RATE_HZ};
 
 /// The thrust command over the mean rotor speed, s/rad, where the log's command is that speed in another unit.
 pub fn command_per_speed(log: &Log) -> Option<f64> {
@@ -27,23 +27,18 @@ pub fn columns(stream: &Stream<MOTORS>) -> Option<Vec<Vec<f64>>> {
     (often && columns.len() > 1).then_some(columns)
 }
 
-/// Share of the range of a motor's outputs within which it is at an end of it.
-const AT_END: f64 = 0.01;
-/// For so long after, rotors and rates are still on their way, s.
-const SETTLING_S: f64 = 0.2;
-
 /// When a motor of the log is at an end of its range while another is not. There a flight controller cannot turn as it
 /// wants to, and moves all motors together to turn all the same: the thrust is the mixer's, and not the command's.
 pub fn mixing(log: &Log) -> Vec<Span> {
     let Some(columns) = columns(&log.motors) else { return Vec::new() };
     let all = || columns.iter().flatten().copied().filter(|u| u.is_finite());
     let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), u| (low.min(u), high.max(u)));
-    let near = AT_END * (high - low);
+    let near = MOTOR_END_SHARE.get() * (high - low);
     let at_end = |i: usize| {
         let at = |k: usize| columns[k][i] < low + near || columns[k][i] > high - near;
         let count = (0..columns.len()).filter(|&k| at(k)).count();
         count > 0 && count < columns.len()
     };
     let time = &log.motors.time_s;
-    joined((0..time.len()).filter(|&i| at_end(i)).map(|i| [time[i], time[i] + SETTLING_S]).collect())
+    joined((0..time.len()).filter(|&i| at_end(i)).map(|i| [time[i], time[i] + MIXER_SETTLING_S.get()]).collect())
 }
