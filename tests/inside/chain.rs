@@ -13,10 +13,10 @@ use racer::model::vehicle::Vehicle;
 use racer::model::vehicle::identified::ThrustSource;
 
 const SECONDS: f64 = 150.0;
-/// Of full thrust, in the middle of the pack, which is what is wanted; and at its ends, where it is missed. The form of
-/// Eq. 7 is not the whole reason: a free fit of it to the true curve comes to 1.1 %.
-const LARGEST_ERROR: f64 = 0.02;
-const LARGEST_AT_ENDS: f64 = 0.05;
+/// Of full thrust: over the motors, which is the goal; and over a command whose voltage the mixer compensates until the
+/// motors saturate. The curve of Eq. 7 that is nearest to the true one is off by 0.5 % over the motors, by 1.5 % there.
+const LARGEST_OVER_MOTORS: f64 = 0.02;
+const LARGEST_OVER_COMMAND: f64 = 0.03;
 
 fn options() -> IdentifyOptions {
     IdentifyOptions::new(Vehicle::load("seed_class").unwrap())
@@ -27,12 +27,12 @@ fn found(log: &Log) -> Identification {
 }
 
 /// Checks the thrust between two shares of the command.
-fn near(truth: &Controlled, c: &[f64; 6], flown: [f64; 2], wanted: &dyn Fn(f64, f64) -> f64) {
+fn near(truth: &Controlled, c: &[f64; 6], flown: [f64; 2], most: f64, wanted: &dyn Fn(f64, f64) -> f64) {
     let end = truth.full_v + SECONDS * truth.rate_v_s;
     let middle = error(truth, c, flown, &[0.5 * (truth.full_v + end)], wanted);
     let ends = error(truth, c, flown, &[truth.full_v, end], wanted);
     println!("of full thrust, share of the command, voltage: middle {middle:?}, ends {ends:?}");
-    assert!(middle[0].abs() < LARGEST_ERROR && ends[0].abs() < LARGEST_AT_ENDS, "{middle:?} {ends:?}");
+    assert!(middle[0].abs() < most && ends[0].abs() < most, "{middle:?} {ends:?}");
 }
 
 /// Largest error of the thrust at these voltages, as a share of full thrust; and where.
@@ -71,9 +71,9 @@ fn the_rotors_are_found_behind_a_mixer() {
         assert!(to > 0.6, "flown to {to}");
         let motors = [from, to].map(|share| truth.output(share, truth.full_v));
         println!("speeds {speeds}: rotor lag {lag:.4} s, over the motors' outputs and the command:");
-        near(&truth, &words.over_motors_n.unwrap(), motors, &|m, v| truth.thrust(m, v));
+        near(&truth, &words.over_motors_n.unwrap(), motors, LARGEST_OVER_MOTORS, &|m, v| truth.thrust(m, v));
         let wanted = |share: f64, v: f64| truth.thrust(truth.output(share, v), v);
-        near(&truth, &found.vehicle.thrust_n, [from, to], &wanted);
+        near(&truth, &found.vehicle.thrust_n, [from, to], LARGEST_OVER_COMMAND, &wanted);
         let identified = found.vehicle.identified.as_ref().unwrap();
         let chain = identified.rotors.unwrap();
         if speeds {

@@ -160,3 +160,14 @@ fn what_is_missing_cannot_be_told() {
     let cut = check(&without(|log| log.readable = Readable::Prefix { bytes: 5, of: 10, why: "breaks off".into() }));
     assert!(find(&cut, "damaged_file").unwrap().what.contains("50 %"));
 }
+
+#[test]
+fn a_mirrored_gyro_is_noticed() {
+    for seed in 1..=6 {
+        let mut log = truth::fly(&truth::Vehicle::draw(seed), seed, 60.0, 1.0);
+        log.imu.rows.iter_mut().for_each(|row| row[1] = -row[1]);
+        let quality = check(&log);
+        let noticed = |f: &LogFinding| f.severity == Severity::Problem && f.what.contains("pitch rate goes against");
+        assert!(quality.findings.iter().any(noticed), "vehicle {seed}: {:?}", quality.findings);
+    }
+}

@@ -48,13 +48,16 @@ impl ScaledField {
         Self { name: name.into(), index: None, zero: 0.0, scale: 1.0, least: f64::NEG_INFINITY }
     }
 
-    /// Fails where the header lacks the scale that the field needs; motors without one are absent.
+    /// Fails where the header lacks the scale that the field needs; motors and an accelerometer without one are absent.
     pub fn new(name: &str, index: usize, header: &Header, place: &str) -> Result<Self, BadInput> {
         let (zero, scale) = match name.split('[').next().unwrap_or(name) {
             "setpoint" if name == "setpoint[3]" => (0.0, 1e-3),
             "setpoint" => (0.0, 1f64.to_radians()),
             "gyroADC" | "gyroUnfilt" => (0.0, header.gyro_scale_rad_s(place)?),
-            "accSmooth" => (0.0, header.acceleration_scale_m_s2(place)?),
+            "accSmooth" => match header.acceleration_scale_m_s2(place)? {
+                Some(scale) => (0.0, scale),
+                None => return Ok(Self::absent(name)),
+            },
             "vbatLatest" => (0.0, header.voltage_scale_v()),
             "amperageLatest" => (0.0, 1e-2),
             "motor" => match header.motor_range() {

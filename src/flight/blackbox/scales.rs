@@ -28,10 +28,12 @@ impl Header<'_> {
         self.positive("gyro_scale", bits.map(|bits| f64::from(f32::from_bits(bits)).to_radians()), place)
     }
 
-    /// m/s2 a count.
-    pub fn acceleration_scale_m_s2(&self, place: &str) -> Result<f64, BadInput> {
-        let one_g = self.numbers::<1>("acc_1G").filter(|[one_g]| *one_g > 0.0);
-        self.positive("acc_1G", one_g.map(|[one_g]| 9.80665 / one_g), place)
+    /// m/s2 a count; `None` where gravity is no count, as of a flight without an accelerometer.
+    pub fn acceleration_scale_m_s2(&self, place: &str) -> Result<Option<f64>, BadInput> {
+        match self.numbers::<1>("acc_1G") {
+            Some([0.0]) => Ok(None),
+            one_g => self.positive("acc_1G", one_g.map(|[one_g]| 9.80665 / one_g), place).map(Some),
+        }
     }
 
     /// Outputs that stop a motor and that drive it fully. The header has the one at which it idles, above the stop.
@@ -116,7 +118,9 @@ mod tests {
     fn scales_that_are_missing_are_named() {
         let header = Header::of(b"H acc_1G:0\nH gyro_scale:0x3f800000\nH motor_poles:14\nI");
         assert_eq!(header.gyro_scale_rad_s("f").unwrap(), 1f64.to_radians());
-        assert!(header.acceleration_scale_m_s2("f").unwrap_err().to_string().contains("acc_1G"));
+        assert_eq!(header.acceleration_scale_m_s2("f").unwrap(), None);
+        let broken = Header::of(b"H acc_1G:-1\nI");
+        assert!(broken.acceleration_scale_m_s2("f").unwrap_err().to_string().contains("acc_1G"));
         assert_eq!(header.motor_range(), None);
         assert_eq!(Header::of(b"H motorOutput:158,2047\n").motor_range(), Some([48.0, 2047.0]));
         assert_eq!(Header::of(b"H minthrottle:1070\nH maxthrottle:2000\n").motor_range(), Some([1000.0, 2000.0]));

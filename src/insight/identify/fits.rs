@@ -1,7 +1,7 @@
 //! Every fit to one part of the flights, and the vehicle that they make.
 
 use super::estimate::Estimated;
-use super::force::{DRAG_AT, ForceTerms, OFFSET, TAU, THRUST};
+use super::force_terms::{DRAG_AT, ForceTerms, OFFSET, TAU, THRUST};
 use super::rate_loop::{self, RateLoop, RateLoopForm};
 use super::rates::{LookedFor, RateAxis};
 use super::solve::Solution;
@@ -107,6 +107,7 @@ impl Fits {
         };
         ForceTerms {
             curves: ForceTerms::curve(self.no_voltage.is_none()),
+            power_at_v: None,
             drag,
             given_drag: if !drag && moving { lent } else { [0.0; 3] },
             bias: self.bias.as_ref().map_or([0.0; 3], |b| [0.0, 0.0, b.values[2]]),

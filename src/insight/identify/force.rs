@@ -1,5 +1,6 @@
 //! Thrust and drag together, from the specific force along all three body axes (paper Eq. 6, 7 and 9).
 
+use super::force_terms::{DRAG_AT, ForceColumns, ForceTerms, OFFSET, POWER, TAU, THRUST, VALUES};
 use super::inputs::Inputs;
 use super::rates::TAUS_S;
 use super::solve::{Solution, Unknown, solve_within};
@@ -14,14 +15,7 @@ use crate::insight::prepare::flight::PreparedFlight;
 use crate::model::dynamics::force_in_body;
 use crate::model::thrust::shape::{self, ThrustLimit};
 use crate::model::thrust::specific_thrust;
-use nalgebra::{DMatrix, DVector};
-
-/// Order of a solution's values: time constant (s), c0..c5 (m/s2), drag along x, y, z (1/m), offsets along x, y (m/s2).
-pub const TAU: usize = 0;
-pub const THRUST: usize = 1;
-pub const DRAG_AT: usize = 7;
-pub const OFFSET: usize = 10;
-pub const VALUES: usize = 12;
+use nalgebra::DMatrix;
 
 /// Slower than this, the voltage is what the model's discharge can follow, Hz; what is faster is the sag under load,
 /// which the model has as part of the thrust curve.
@@ -29,39 +23,9 @@ const VOLTAGE_HZ: f64 = 0.5;
 /// Least drag over mass of an axis, 1/m: without any, an ellipsoid has no size.
 const LEAST_DRAG_1_M: f64 = 1e-4;
 
-/// A curve of one number: proportional to the square of the throttle, as to that of a rotor's speed.
-pub const SQUARE: [f64; 6] = [0.25, 0.5, 0.25, 0.0, 0.0, 0.0];
-
-/// What is fitted.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ForceTerms {
-    /// The thrust curve is a sum of these, each as c0..c5.
-    pub curves: Vec<[f64; 6]>,
-    /// Drag, with the constant offsets of the specific force along x and y beside it.
-    pub drag: bool,
-    /// Drag along x, y, z that is not fitted, 1/m.
-    pub given_drag: [f64; 3],
-    /// The accelerometer's bias along x, y, z, m/s2; it is taken off.
-    pub bias: [f64; 3],
-    /// Cut-off of the zero-phase filter, Hz.
-    pub cutoff_hz: f64,
-    /// Voltages between which the curve has to be a vehicle's.
-    pub volts: [f64; 2],
-    /// Gravity, m/s2.
-    pub gravity: f64,
-}
-
-impl ForceTerms {
-    /// The terms of a whole curve: c0..c3, with c4 and c5 where the voltage tells them.
-    pub fn curve(by_voltage: bool) -> Vec<[f64; 6]> {
-        let unit = |k: usize| std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
-        (0..if by_voltage { 6 } else { 4 }).map(unit).collect()
-    }
-
-    fn by_voltage(&self) -> bool {
-        self.curves.iter().any(|c| c[4] != 0.0 || c[5] != 0.0)
-    }
-}
+/// Power of the voltage to begin with, and most: a motor at a given duty, and the sag under load on top.
+const SQUARED: f64 = 2.0;
+const MOST_POWER: f64 = 3.0;
 
 /// Measured and predicted specific force.
 pub struct Force<'a> {
@@ -91,18 +55,34 @@ impl<'a> Force<'a> {
         Self { data, inputs, measured: [0, 1, 2].map(channel), terms, voltage }
     }
 
+    /// The same with other terms of the same channels, bias and filter.
+    pub fn with(&self, terms: ForceTerms) -> Self {
+        Self {
+            data: self.data,
+            inputs: self.inputs,
+            measured: self.measured.clone(),
+            terms,
+            voltage: self.voltage.clone(),
+        }
+    }
+
+    pub fn terms(&self) -> &ForceTerms {
+        &self.terms
+    }
+
     /// Channels in use: x and y tell drag only.
     fn axes(&self) -> &'static [usize] {
         if self.terms.drag { &[0, 1, 2] } else { &[2] }
     }
 
-    /// Thrust over mass of the curve `c`, the mean over what lifts, of every flight.
-    fn thrust(&self, c: &[f64; 6], tau: f64) -> Vec<Vec<f64>> {
+    /// Thrust over mass of the curve `c`, the mean over what lifts, of every flight; with a `power` of the voltage, where the terms have one.
+    fn thrust(&self, c: &[f64; 6], tau: f64, power: f64) -> Vec<Vec<f64>> {
         let one = |(f, flight): (usize, &PreparedFlight)| {
             let inputs = self.inputs.at(f, &flight.time, tau);
             let mean = |i: usize| {
                 let v = self.voltage[f][i];
-                inputs.iter().map(|u| specific_thrust(c, u[i], v)).sum::<f64>() / inputs.len() as f64
+                let factor = self.terms.power_at_v.map_or(1.0, |at| (v / at).powf(power));
+                factor * inputs.iter().map(|u| specific_thrust(c, u[i], v)).sum::<f64>() / inputs.len() as f64
             };
             (0..flight.time.len()).map(mean).collect()
         };
@@ -115,7 +95,7 @@ impl<'a> Force<'a> {
         let given = self.terms.given_drag;
         let drag: [f64; 3] = std::array::from_fn(|k| if self.terms.drag { x[DRAG_AT + k] } else { given[k] });
         let draggy = drag.iter().any(|k| *k > 0.0);
-        let thrust = self.thrust(&c, x[TAU]);
+        let thrust = self.thrust(&c, x[TAU], x[POWER]);
         let mut out: [Vec<Vec<f64>>; 3] = Default::default();
         for (f, flight) in self.data.flights.iter().enumerate() {
             let mut force: [Vec<f64>; 3] = Default::default();
@@ -151,7 +131,7 @@ impl<'a> Force<'a> {
     /// and under `limits`; and what is left.
     fn linear(&self, tau: f64, chosen: &Chosen, limits: &[Halfspace]) -> Option<(Vec<f64>, f64)> {
         let signals: Vec<Vec<f64>> =
-            self.terms.curves.iter().map(|c| Data::pick(&self.thrust(c, tau), chosen)).collect();
+            self.terms.curves.iter().map(|c| Data::pick(&self.thrust(c, tau, SQUARED), chosen)).collect();
         let measured = Data::pick(&self.measured[2], chosen);
         let n = signals.len();
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -218,6 +198,9 @@ impl<'a> Force<'a> {
             out.extend([Unknown { start: 0.02, low, high, step: 1e-4, linear: false }; 3]);
             out.extend([Unknown { start: 0.0, low: -5.0, high: 5.0, step: 1e-3, linear: true }; 2]);
         }
+        if self.terms.power_at_v.is_some() {
+            out.push(Unknown { start: SQUARED, low: 0.0, high: MOST_POWER, step: 1e-2, linear: false });
+        }
         out
     }
 
@@ -229,7 +212,7 @@ impl<'a> Force<'a> {
     /// Thrust over mass by `c` at every sample, m/s2: what others can be fitted to.
     pub fn thrust_by(&self, solution: &Solution) -> Vec<Vec<f64>> {
         let c: [f64; 6] = std::array::from_fn(|k| solution.values[THRUST + k]);
-        self.thrust(&c, solution.values[TAU])
+        self.thrust(&c, solution.values[TAU], solution.values[POWER])
     }
 }
 
@@ -244,6 +227,13 @@ fn drag_limits() -> Vec<Halfspace> {
     pairs.map(limit).collect()
 }
 
+/// Lowest and highest voltage of the flights without what is faster than a discharge, or those of the pack, V.
+pub fn flown_volts(data: &Data, pack: [f64; 2]) -> [f64; 2] {
+    let all = data.flights.iter().flat_map(slow).filter(|v| v.is_finite());
+    let [low, high] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+    if low <= high { [low.max(pack[0]), high.min(pack[1])] } else { pack }
+}
+
 /// The voltage without what is faster than a discharge, V.
 fn slow(flight: &PreparedFlight) -> Vec<f64> {
     let mut voltage = flight.voltage.clone();
@@ -253,43 +243,4 @@ fn slow(flight: &PreparedFlight) -> Vec<f64> {
         filter.run(&mut voltage);
     }
     voltage
-}
-
-/// Where the unknowns of a fit are among a solution's values.
-struct ForceColumns<'a> {
-    terms: &'a ForceTerms,
-    lags: bool,
-}
-
-impl ForceColumns<'_> {
-    /// The values are this matrix times the unknowns.
-    fn matrix(&self) -> DMatrix<f64> {
-        let first = usize::from(self.lags);
-        let n = self.terms.curves.len();
-        let rest = if self.terms.drag { VALUES - DRAG_AT } else { 0 };
-        let mut out = DMatrix::zeros(VALUES, first + n + rest);
-        if self.lags {
-            out[(TAU, 0)] = 1.0;
-        }
-        for (j, curve) in self.terms.curves.iter().enumerate() {
-            (0..6).for_each(|k| out[(THRUST + k, first + j)] = curve[k]);
-        }
-        (0..rest).for_each(|k| out[(DRAG_AT + k, first + n + k)] = 1.0);
-        out
-    }
-
-    fn values(&self, x: &[f64]) -> Vec<f64> {
-        (self.matrix() * DVector::from_column_slice(x)).iter().copied().collect()
-    }
-
-    fn solution(&self, found: &Solution) -> Solution {
-        let matrix = self.matrix();
-        let touched = |i: usize| (0..matrix.ncols()).any(|j| matrix[(i, j)] != 0.0 && found.at_bound[j]);
-        Solution {
-            values: self.values(&found.values),
-            covariance: &matrix * &found.covariance * matrix.transpose(),
-            at_bound: (0..VALUES).map(touched).collect(),
-            noise: found.noise.clone(),
-        }
-    }
 }

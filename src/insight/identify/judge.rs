@@ -4,7 +4,7 @@
 use super::AXES;
 use super::estimate::Estimated;
 use super::fits::{Fits, Kept};
-use super::force::{DRAG_AT, TAU};
+use super::force_terms::{DRAG_AT, TAU};
 use crate::base::stats::Score;
 use crate::insight::criteria::identified::UNEXPLAINED_MOST;
 use crate::insight::predict::{PredictedChannel, Prediction};

@@ -1,22 +1,16 @@
 //! The thrust from whatever is nearest to the rotors: their speeds, the motors' outputs, or else the command; and from
 //! there the curve that a policy needs, over the collective command.
 
-use super::force::{DRAG_AT, Force, ForceTerms, OFFSET, SQUARE, TAU, THRUST};
+use super::force::{Force, flown_volts};
+use super::force_terms::{DRAG_AT, ForceTerms, OFFSET, SQUARE, TAU, THRUST};
 use super::inputs::Inputs;
+use super::law::Law;
 use super::mixer::{self, Mixer};
+use super::nearest::Flown;
 use super::solve::Solution;
-use crate::insight::estimate::halfspace::{Halfspace, minimum};
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::insight::prepare::rotors::command_per_speed;
-use crate::model::thrust::shape;
-use crate::model::thrust::specific_thrust;
 use crate::model::vehicle::identified::{RotorChain, ThrustSource};
-use nalgebra::DMatrix;
-
-/// Commands and voltages at which the curve over the command stands for the one over the motors, and the weight of
-/// those that were flown.
-const GRID: i32 = 20;
-const FLOWN_WEIGHT: f64 = 25.0;
 
 /// What was found of the thrust.
 pub struct ThrustFit {
@@ -91,16 +85,25 @@ pub fn fit(data: &Data, part: DataPart, terms: &ForceTerms) -> Option<ThrustFit>
         Some(by_speed) => Force::new(data, inputs, without_drag.clone(), Some(&by_speed.thrust)),
         None => Force::new(data, inputs, terms.clone(), None),
     };
-    let mut over_inputs = force.fit(part)?;
+    let mut law = Law::fit(force, part, motors.is_some())?;
     if let Some(by_speed) = &by_speed {
-        with_drag_of(&mut over_inputs, &by_speed.solution);
+        with_drag_of(&mut law.fitted, &by_speed.solution);
     }
     let source = match (&by_speed, &motors) {
         (Some(_), _) => ThrustSource::Speeds,
         (None, Some(_)) => ThrustSource::Motors,
         (None, None) => ThrustSource::Command,
     };
-    let flown = Force::new(data, &command, without_drag, None).flown(over_inputs.values[TAU]);
+    let lag = law.fitted.values[TAU];
+    let flown = |inputs: &Inputs| Flown {
+        commands: Force::new(data, inputs, without_drag.clone(), None).flown(lag),
+        volts: flown_volts(data, terms.volts),
+    };
+    let over_inputs = match law.terms.power_at_v {
+        Some(_) => law.over(&|u, _| u, terms, flown(inputs))?,
+        None => law.fitted.clone(),
+    };
+    let flown = flown(&command);
     let chain = RotorChain {
         thrust_n_per_speed_squared: by_speed.as_ref().map(|by_speed| by_speed.per_square),
         ..RotorChain::DIRECT
@@ -111,10 +114,10 @@ pub fn fit(data: &Data, part: DataPart, terms: &ForceTerms) -> Option<ThrustFit>
         motors: None,
         chain: by_speed.is_some().then_some(chain),
         mixer: None,
-        flown,
+        flown: flown.commands,
         lags: true,
     };
-    if motors.is_none() { Some(over_command) } else { behind_mixer(data, part, terms, chain, over_command) }
+    if motors.is_none() { Some(over_command) } else { behind_mixer(data, part, terms, &law, flown, over_command) }
 }
 
 /// The fit over the motors' outputs, `over_motors`, as one over the command.
@@ -122,15 +125,18 @@ fn behind_mixer(
     data: &Data,
     part: DataPart,
     terms: &ForceTerms,
-    mut chain: RotorChain,
+    law: &Law,
+    flown: Flown,
     over_motors: ThrustFit,
 ) -> Option<ThrustFit> {
     let motors = over_motors.solution;
     let mut solution = motors.clone();
-    let mixer = mixer::fit(data, part, terms.curves.len() > 4);
+    let mut chain = over_motors.chain.unwrap_or(RotorChain::DIRECT);
+    let mixer = mixer::fit(data, part, terms.by_voltage());
     if let Some(mixer) = &mixer {
         chain = RotorChain { thrust_n_per_speed_squared: chain.thrust_n_per_speed_squared, ..mixer.chain };
-        over_command(&mut solution, &chain, terms, over_motors.flown)?;
+        let motor = |u: f64, v: f64| 2.0 * chain.motor(0.5 + 0.5 * u, v).clamp(0.0, 1.0) - 1.0;
+        solution = law.over(&motor, terms, flown)?;
         solution.values[TAU] += chain.command_lag_s.unwrap_or(0.0);
         let lag = if mixer.solution.at_bound[0] { 0.0 } else { mixer.solution.covariance[(0, 0)] };
         solution.covariance[(TAU, TAU)] += lag;
@@ -153,41 +159,4 @@ fn with_drag_of(to: &mut Solution, from: &Solution) {
         taken.clone().for_each(|j| to.covariance[(i, j)] = from.covariance[(i, j)]);
     }
     to.noise.clone_from(&from.noise);
-}
-
-/// The curve over the command in place of that over the motors: the one of a vehicle that is nearest to it over
-/// commands and voltages, where they were flown most of all.
-fn over_command(solution: &mut Solution, chain: &RotorChain, terms: &ForceTerms, flown: [f64; 2]) -> Option<()> {
-    let n = terms.curves.len();
-    let over_motors: [f64; 6] = std::array::from_fn(|k| solution.values[THRUST + k]);
-    let (mut normal, mut right) = (DMatrix::zeros(n, n), vec![0.0; n]);
-    let mut by_motors = DMatrix::zeros(n, n);
-    for volts in [terms.volts[0], 0.5 * (terms.volts[0] + terms.volts[1]), terms.volts[1]] {
-        for k in -GRID..=GRID {
-            let u = f64::from(k) / f64::from(GRID);
-            let weight = if (flown[0]..=flown[1]).contains(&u) { FLOWN_WEIGHT } else { 1.0 };
-            let motor = 2.0 * chain.motor(0.5 + 0.5 * u, volts).clamp(0.0, 1.0) - 1.0;
-            let row: Vec<f64> = terms.curves.iter().map(|c| specific_thrust(c, u, volts)).collect();
-            let motor_row: Vec<f64> = terms.curves.iter().map(|c| specific_thrust(c, motor, volts)).collect();
-            let wanted = specific_thrust(&over_motors, motor, volts);
-            for a in 0..n {
-                right[a] += weight * row[a] * wanted;
-                for b in 0..n {
-                    normal[(a, b)] += weight * row[a] * row[b];
-                    by_motors[(a, b)] += weight * row[a] * motor_row[b];
-                }
-            }
-        }
-    }
-    let limits = shape::limits(terms.volts, terms.gravity, flown);
-    let limits: Vec<Halfspace> =
-        limits.iter().map(|l| Halfspace { row: l.row[..n].to_vec(), least: l.least }).collect();
-    let found = minimum(&normal, &vec![0.0; n], &right, &limits)?;
-    (0..n).for_each(|k| solution.values[THRUST + k] = found[k]);
-    // The same map without limits takes the covariance along.
-    let map = normal.cholesky()?.solve(&by_motors);
-    let own = solution.covariance.view((THRUST, THRUST), (n, n)).into_owned();
-    let moved = &map * own * map.transpose();
-    solution.covariance.view_mut((THRUST, THRUST), (n, n)).copy_from(&moved);
-    Some(())
 }

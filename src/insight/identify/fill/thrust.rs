@@ -4,7 +4,7 @@ use super::{judged, response};
 use crate::base::stats::NORMAL_95;
 use crate::insight::identify::estimate::Estimated;
 use crate::insight::identify::fits::Fits;
-use crate::insight::identify::force::{DRAG_AT, TAU, THRUST};
+use crate::insight::identify::force_terms::{DRAG_AT, TAU, THRUST};
 use crate::insight::identify::judge::Accepted;
 use crate::insight::identify::result::Identification;
 use crate::insight::identify::solve::Solution;
