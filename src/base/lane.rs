@@ -8,6 +8,7 @@
 //! Everything called inside a [`Kernel`] must be `#[inline(always)]`, or wrapped in [`Real::vectorize`]: a function
 //! that is compiled on its own does not know which instructions it may use.
 
+pub mod bf16;
 mod block;
 mod level;
 pub mod math;
@@ -27,6 +28,8 @@ pub use portable::Portable;
 
 /// Lanes in a block, on every CPU, so that results do not depend on the vector length.
 pub const LANES: usize = 16;
+/// Numbers in a row of a product in [`bf16`].
+pub const COLUMNS: usize = 4 * LANES;
 
 /// `[f(0), f(1), ..]`, as [`std::array::from_fn`], but inlined: a closure over blocks that is called as a function of
 /// its own passes them through memory and does not know which instructions it may use.
@@ -266,6 +269,8 @@ pub trait Lane32: Lane<Elem = f32> + Single {
     type Bits: Bits;
     /// `bits` as a number, exact below 2^24.
     fn from_bits(bits: Self::Bits) -> Self;
+    /// The bits of [`bf16::pair`] of every lane: a block to be stored, no numbers.
+    fn bf16_pairs(first: Self, second: Self) -> Self;
 }
 
 /// An unsigned 32-bit integer, or 16 of them: what random numbers are made of.

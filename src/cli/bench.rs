@@ -9,7 +9,7 @@ use crate::base::peak;
 use crate::learn::ppo::Environment;
 use crate::present::bench::threads::ThreadsModel;
 use crate::present::bench::{BenchFigures, Pair, PeakShares, measure, training_flops_per_step};
-use crate::race::config::{DEFAULT, Setup};
+use crate::race::config::{DEFAULT, Setting, Setup};
 use crate::race::env::Race;
 use serde::Serialize;
 use std::time::Duration;
@@ -18,6 +18,12 @@ use std::time::Duration;
 #[derive(Debug, clap::Args)]
 #[command(after_help = HELP)]
 pub struct Args {
+    /// Configuration to measure: a name or a file, as in `racer train`
+    #[arg(long, value_name = "NAME|FILE", default_value = DEFAULT)]
+    config: String,
+    /// Change one key of the configuration; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
     /// Print JSON in place of the table
     #[arg(long)]
     json: bool,
@@ -35,7 +41,7 @@ pub struct Args {
     threads_model: bool,
 }
 
-const HELP: &str = "Figures are environment steps of 10 ms a second, with the default configuration:
+const HELP: &str = "Figures are environment steps of 10 ms a second:
   physics      the equations of motion alone, commands held
   environment  observation, noise, motion, gates, reward, ends and resets; commands held, no policy
   rollout      the environment flown by the stochastic policy, stored for learning
@@ -75,7 +81,8 @@ struct BenchReport<'a> {
 
 /// Measures and prints.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
-    let Setup { config, track, vehicle } = Setup::load(DEFAULT, &[])?;
+    let settings = args.set.iter().map(|text| Setting::parse(text)).collect::<Result<Vec<_>, _>>()?;
+    let Setup { config, track, vehicle } = Setup::load(&args.config, &settings)?;
     tell(&format!("measuring, about {:.0} s", args.seconds));
     let time = Duration::from_secs_f64(args.seconds);
     if args.parts || args.threads_model {

@@ -4,6 +4,8 @@ use super::training::ShownTraining;
 use super::values::threads;
 use super::{CommandEnd, interrupt, tell};
 use crate::base::check::BadInput;
+use crate::base::lane::bf16::Bf16Unit;
+use crate::learn::ppo::config::ProductPrecision;
 use crate::present::run::Run;
 use crate::present::train::{Ended, make, resume, room};
 use crate::race::config::{DEFAULT, Setting, Setup};
@@ -86,6 +88,9 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     }
     let setup = Setup::load(&args.config, &args.settings()?)?;
     room::check(&setup)?;
+    if setup.config.ppo.precision == ProductPrecision::Bf16 && Bf16Unit::best() == Bf16Unit::Portable {
+        tell("This processor has no instruction for bf16: without `ppo.precision=bf16` it trains many times as fast.");
+    }
     let run = Run::create(args.out.as_deref(), &setup.track.name)?;
     let mut shown = ShownTraining::new();
     if args.attached {

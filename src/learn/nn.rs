@@ -2,6 +2,7 @@
 
 pub mod adam;
 pub mod aligned;
+pub mod bf16;
 pub mod finish;
 pub mod gemm;
 pub mod init;
@@ -11,6 +12,7 @@ use crate::base::lane::{LANES, Lane};
 use crate::base::rng::Sequence;
 use crate::learn::policy::ACTIONS;
 use aligned::Aligned;
+use gemm::Exact;
 use mlp::{Hidden, Layout};
 use std::ops::Range;
 
@@ -118,13 +120,13 @@ impl<E: Copy + Default> Network<E> {
     /// Mean action before squashing alone, `[4][64]`.
     #[inline(always)]
     pub fn forward_actor<L: Lane<Elem = E>>(&self, x: &[E], scratch: &mut Scratch<E>, mean: &mut [E]) {
-        mlp::forward::<L>(&self.actor, &self.parameters, TILE_SAMPLES, TILE_SAMPLES, x, &mut scratch.0, mean);
+        mlp::forward::<L, Exact>(&self.actor, &self.parameters, TILE_SAMPLES, TILE_SAMPLES, x, &mut scratch.0, mean);
     }
 
     /// Value alone, `[64]`.
     #[inline(always)]
     pub fn forward_critic<L: Lane<Elem = E>>(&self, x: &[E], scratch: &mut Scratch<E>, value: &mut [E]) {
-        mlp::forward::<L>(&self.critic, &self.parameters, TILE_SAMPLES, TILE_SAMPLES, x, &mut scratch.0, value);
+        mlp::forward::<L, Exact>(&self.critic, &self.parameters, TILE_SAMPLES, TILE_SAMPLES, x, &mut scratch.0, value);
     }
 }
 

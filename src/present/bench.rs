@@ -4,12 +4,14 @@
 
 pub mod threads;
 
+use crate::base::lane::bf16::Bf16Unit;
 use crate::base::lane::{Kernel, LANES, Lane32, Level, dispatch, each};
 use crate::base::peak;
 use crate::base::stopwatch::best;
 use crate::learn::nn::{HIDDEN, TILE_BLOCKS};
 use crate::learn::policy::ACTIONS;
 use crate::learn::ppo::Environment;
+use crate::learn::ppo::config::ProductPrecision;
 use crate::learn::ppo::training::Training;
 use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::{Craft, Factors, State};
@@ -133,7 +135,10 @@ pub fn measure(
         training_peak_share_one_thread: peak_shares.training.one_thread,
         training_flops_per_step: flops,
         threads,
-        simd: level.to_string(),
+        simd: match config.ppo.precision {
+            ProductPrecision::F32 => level.to_string(),
+            ProductPrecision::Bf16 => format!("{level}, bf16: {}", Bf16Unit::best()),
+        },
     }
 }
 

@@ -1,8 +1,10 @@
 //! One whole PPO step and one GAE example against numbers from an independent automatic differentiation in f64.
 
 use racer::base::lane::{LANES, Level, Portable, Real};
+use racer::learn::nn::gemm::Exact;
 use racer::learn::nn::{Layer, Network};
 use racer::learn::ppo::batch::Minibatch;
+use racer::learn::ppo::config::ProductPrecision;
 use racer::learn::ppo::gae;
 use racer::learn::ppo::loss::Weights;
 use racer::learn::ppo::update::{Hyper, Losses, Updater};
@@ -51,6 +53,7 @@ fn network(parameters: &Value) -> Network<f64> {
 fn hyper(golden: &Value, squashed: bool) -> Hyper {
     let get = |name: &str| golden["hyper"][name].as_f64().expect("a number");
     Hyper {
+        precision: ProductPrecision::F32,
         weights: Weights {
             clip: get("clip"),
             entropy: get("entropy_coefficient"),
@@ -126,7 +129,7 @@ fn a_step_in_double_precision() {
         let found = step(
             |x| x,
             entropy_of_the_action,
-            |u, network, batch, rows, hyper| u.step_with::<Portable<f64>>(network, batch, rows, hyper),
+            |u, network, batch, rows, hyper| u.step_with::<Portable<f64>, Exact>(network, batch, rows, hyper),
         );
         check("f64", &golden, found, tolerance);
     }

@@ -3,6 +3,9 @@
 use racer::base::lane::{LANES, Portable};
 use racer::base::rng::{Philox, RngStream};
 use racer::learn::nn::Network;
+use racer::learn::nn::aligned::Aligned;
+use racer::learn::nn::bf16::Bf16;
+use racer::learn::nn::gemm::Exact;
 use racer::learn::policy::log_prob_of;
 use racer::learn::ppo::batch::Minibatch;
 use racer::learn::ppo::loss::Weights;
@@ -58,7 +61,7 @@ fn check(name: &str, weights: Weights) {
     };
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let mut updater = Updater::new(&network);
-    let losses = updater.differentiate::<Portable<f64>>(&network, &batch, &rows, &weights);
+    let losses = updater.differentiate::<Portable<f64>, Exact>(&network, &batch, &rows, &weights);
     assert!((0.05..0.95).contains(&losses.clip_fraction), "{name}: {losses:?}");
     let gradient = updater.gradient.to_vec();
     let largest = gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
@@ -70,7 +73,7 @@ fn check(name: &str, weights: Weights) {
         let here = network.parameters[i];
         let mut at = |x: f64| {
             network.parameters[i] = x;
-            updater.differentiate::<Portable<f64>>(&network, &batch, &rows, &weights).total
+            updater.differentiate::<Portable<f64>, Exact>(&network, &batch, &rows, &weights).total
         };
         let difference = (at(here + step) - at(here - step)) / (2.0 * step);
         network.parameters[i] = here;
@@ -102,4 +105,35 @@ fn entropy_and_magnitude() {
 #[test]
 fn all_terms() {
     check("all", Weights { clip: 0.3, entropy: 0.01, squashed: true, magnitude: 0.15, value: 0.5 });
+}
+
+/// Factors of eight bits point the gradient the same way, within what eight bits are.
+#[test]
+fn in_bf16_the_gradient_is_nearly_the_same() {
+    let (network, data) = example();
+    let mut parameters = Aligned::zeros(network.parameters.len());
+    parameters.iter_mut().zip(network.parameters.iter()).for_each(|(to, from)| *to = *from as f32);
+    let network = Network { actor: network.actor, critic: network.critic, parameters };
+    let [observations, z, log_prob, advantages, returns] =
+        data.map(|x| x.into_iter().map(|x| x as f32).collect::<Vec<_>>());
+    let batch = Minibatch {
+        observations: &observations,
+        z: &z,
+        log_prob: &log_prob,
+        advantages: &advantages,
+        returns: &returns,
+    };
+    let rows: Vec<u32> = (0..ROWS as u32).collect();
+    let weights = Weights { clip: 0.3, entropy: 0.01, squashed: true, magnitude: 0.15, value: 0.5 };
+    let [mut exact, mut rounded] = [Updater::new(&network), Updater::new(&network)];
+    let losses = [
+        exact.differentiate::<Portable<f32>, Exact>(&network, &batch, &rows, &weights),
+        rounded.differentiate::<Portable<f32>, Bf16>(&network, &batch, &rows, &weights),
+    ];
+    assert!((losses[0].total / losses[1].total - 1.0).abs() < 0.01, "{losses:?}");
+    let product = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(a * b)).sum::<f64>();
+    let (a, b) = (&exact.gradient, &rounded.gradient);
+    let along = product(a, b) / (product(a, a) * product(b, b)).sqrt();
+    assert!(along > 0.999 && a[..] != b[..], "cosine {along}");
+    assert!((product(b, b) / product(a, a) - 1.0).abs() < 0.02);
 }

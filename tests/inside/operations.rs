@@ -162,6 +162,9 @@ impl Lane32 for Counted {
     fn from_bits(bits: CountedBits) -> Self {
         count(1, Self(F::from_bits(bits.0)))
     }
+    fn bf16_pairs(first: Self, second: Self) -> Self {
+        Self(F::bf16_pairs(first.0, second.0))
+    }
 }
 
 impl Word for CountedBits {

@@ -2,6 +2,8 @@
 //!
 //! `RACER_KILLS` says how many moments are tried, `RACER_KILLS_TABLE` where a table of them is written as it comes.
 
+mod others;
+
 use crate::support::racer;
 use assert_cmd::cargo::CommandCargoExt;
 use racer::race::snapshot::Snapshot;
@@ -63,8 +65,13 @@ fn whole(run: &Path) -> (usize, usize, usize) {
     (log.lines().count().saturating_sub(1), snapshots.len(), files(&run.join("checkpoints"), ".checkpoint").len())
 }
 
+/// How many moments are tried.
+pub fn moments() -> usize {
+    std::env::var("RACER_KILLS").map_or(4, |n| n.parse().unwrap())
+}
+
 /// Starts `racer args` and kills it after `time`; whether it had ended before.
-fn killed(at: &Path, args: &[&str], time: Duration) -> bool {
+pub fn killed(at: &Path, args: &[&str], time: Duration) -> bool {
     let mut command = Command::cargo_bin("racer").unwrap();
     let command = command.current_dir(at).args(args).stdout(Stdio::null()).stderr(Stdio::null());
     let mut child = command.spawn().unwrap();
@@ -77,7 +84,7 @@ fn killed(at: &Path, args: &[&str], time: Duration) -> bool {
 
 #[test]
 fn what_a_killed_training_leaves_is_whole_and_goes_on_to_the_same_policies() {
-    let moments: usize = std::env::var("RACER_KILLS").map_or(4, |n| n.parse().unwrap());
+    let moments = moments();
     let mut table = std::env::var("RACER_KILLS_TABLE").ok().map(|path| std::fs::File::create(path).unwrap());
     if let Some(table) = &mut table {
         writeln!(table, "moment,killed_after_s,kills,rows,snapshots,checkpoints,went_on,policies").unwrap();

@@ -240,6 +240,10 @@ macro_rules! block {
             fn from_bits(bits: $words) -> Self {
                 Self(registers!($n, number, bits.0))
             }
+            #[inline(always)]
+            fn bf16_pairs(first: Self, second: Self) -> Self {
+                Self(registers!($n, bf16_pairs, first.0, second.0))
+            }
         }
 
         impl Word for $words {

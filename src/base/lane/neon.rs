@@ -56,6 +56,12 @@ operations! {
     high_products(a: W, x: W) -> W = vreinterpretq_u32_u64(vmull_high_u32(a, x));
     mul_high(a: W, x: W) -> W = vuzp2q_u32(low_products(a, x), high_products(a, x));
     mul_low(a: W, x: W) -> W = vmulq_u32(a, x);
+    // To bf16: half of the last place is added, or a bit less where it is even.
+    odd_place(a: W) -> W = vandq_u32(vshrq_n_u32::<16>(a), vdupq_n_u32(1));
+    near(a: W) -> W = vaddq_u32(vaddq_u32(a, vdupq_n_u32(0x7fff)), odd_place(a));
+    first_half(a: R) -> W = vshrq_n_u32::<16>(near(vreinterpretq_u32_f32(a)));
+    second_half(a: R) -> W = vandq_u32(near(vreinterpretq_u32_f32(a)), vdupq_n_u32(0xffff_0000));
+    bf16_pairs(a: R, b: R) -> R = vreinterpretq_f32_u32(vorrq_u32(first_half(a), second_half(b)));
 }
 
 /// A 4 x 4 transpose within registers.

@@ -200,6 +200,10 @@ impl Lane32 for Portable<f32> {
     fn from_bits(bits: Portable<u32>) -> Self {
         Portable(bits.0.map(|b| b as i32 as f32))
     }
+    #[inline(always)]
+    fn bf16_pairs(first: Self, second: Self) -> Self {
+        Portable(from_fn(|i| f32::from_bits(super::bf16::pair(first.0[i], second.0[i]))))
+    }
 }
 
 impl BitXor for Portable<u32> {

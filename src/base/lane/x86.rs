@@ -1,8 +1,11 @@
 //! The block in x86-64 registers: one of 512 bits, two of 256, or four of 128.
 
+#[cfg(target_os = "linux")]
+pub mod amx;
 mod avx2;
 mod avx512;
 mod sse2;
+pub mod vdpbf16;
 
 pub use avx2::Avx2;
 pub use avx512::Avx512;

@@ -2,14 +2,14 @@
 
 use super::force::Force;
 use super::force_terms::{ForceTerms, POWER, THRUST, VALUES};
-use super::nearest::{Flown, nearest};
+use super::nearest::{FlownRange, nearest};
 use super::solve::Solution;
 use crate::insight::prepare::data::DataPart;
 use crate::model::thrust::specific_thrust;
 use nalgebra::DMatrix;
 
-/// Thrust over inputs and voltage as it was fitted: Eq. 7, or a curve at full pack times a power of the voltage. In Eq. 7
-/// the slope with the voltage is a line over the throttle; a flight that is mostly near hover draws the line there,
+/// Thrust over inputs and voltage as it was fitted: Eq. 7, or a curve at full pack times a power of the voltage. In Eq.
+/// 7 the slope with the voltage is a line over the throttle; a flight that is mostly near hover draws the line there,
 /// though thrust needs the slope near full throttle.
 pub struct Law {
     pub fitted: Solution,
@@ -48,7 +48,7 @@ impl Law {
 
     /// The solution with the curve of a vehicle that is nearest to this law of `input`, which is one of the command and
     /// the voltage.
-    pub fn over(&self, input: &dyn Fn(f64, f64) -> f64, terms: &ForceTerms, flown: Flown) -> Option<Solution> {
+    pub fn over(&self, input: &dyn Fn(f64, f64) -> f64, terms: &ForceTerms, flown: FlownRange) -> Option<Solution> {
         let (curve, by_law) = nearest(terms, flown, &|u, v| self.at(input(u, v), v))?;
         let power = self.terms.power_at_v.map(|_| POWER);
         let numbers: Vec<usize> = (0..self.terms.curves.len()).map(|k| THRUST + k).chain(power).collect();

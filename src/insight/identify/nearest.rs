@@ -1,5 +1,5 @@
-//! The thrust curve of a vehicle (paper Eq. 7) that is nearest to another law of the throttle and the voltage: over what
-//! was flown its largest error is the least there is, elsewhere the squares of its errors.
+//! The thrust curve of a vehicle (paper Eq. 7) that is nearest to another law of the throttle and the voltage: over
+//! what was flown its largest error is the least there is, elsewhere the squares of its errors.
 
 use super::force_terms::ForceTerms;
 use crate::insight::estimate::halfspace::{Halfspace, minimum};
@@ -15,12 +15,12 @@ const ROUNDS: usize = 30;
 
 /// What was flown: commands, -1..1, and voltages, V.
 #[derive(Clone, Copy, Debug)]
-pub struct Flown {
+pub struct FlownRange {
     pub commands: [f64; 2],
     pub volts: [f64; 2],
 }
 
-impl Flown {
+impl FlownRange {
     /// Commands and voltages, those of the pack and those that were flown; and whether a pair was.
     fn grid(&self, pack: [f64; 2]) -> Vec<([f64; 2], bool)> {
         let between = |[low, high]: [f64; 2], k: i32, n: i32| low + (high - low) * f64::from(k) / f64::from(n);
@@ -36,7 +36,7 @@ impl Flown {
 /// command and a voltage, and its derivative by each of them.
 pub fn nearest(
     terms: &ForceTerms,
-    flown: Flown,
+    flown: FlownRange,
     law: &dyn Fn(f64, f64) -> (f64, Vec<f64>),
 ) -> Option<(Vec<f64>, DMatrix<f64>)> {
     let n = terms.curves.len();
@@ -46,18 +46,18 @@ pub fn nearest(
     let point = |([u, v], flown): ([f64; 2], bool)| {
         let row: Vec<f64> = terms.curves.iter().map(|c| specific_thrust(c, u, v)).collect();
         let (thrust, by) = law(u, v);
-        Point { row, thrust, by, weight: if flown { FLOWN_WEIGHT } else { 1.0 }, flown }
+        GridPoint { row, thrust, by, weight: if flown { FLOWN_WEIGHT } else { 1.0 }, flown }
     };
-    let mut points: Vec<Point> = flown.grid(terms.volts).into_iter().map(point).collect();
+    let mut points: Vec<GridPoint> = flown.grid(terms.volts).into_iter().map(point).collect();
     let numbers = points.first()?.by.len();
     let mut found: Option<(f64, Vec<f64>, DMatrix<f64>)> = None;
     for _ in 0..ROUNDS {
-        let sum = |of: &dyn Fn(&Point) -> f64| points.iter().map(|p| p.weight * of(p)).sum::<f64>();
+        let sum = |of: &dyn Fn(&GridPoint) -> f64| points.iter().map(|p| p.weight * of(p)).sum::<f64>();
         let normal = DMatrix::from_fn(n, n, |a, b| sum(&|p| p.row[a] * p.row[b]));
         let by_law = DMatrix::from_fn(n, numbers, |a, b| sum(&|p| p.row[a] * p.by[b]));
         let right: Vec<f64> = (0..n).map(|a| sum(&|p| p.row[a] * p.thrust)).collect();
         let curve = minimum(&normal, &vec![0.0; n], &right, &limits)?;
-        let error = |p: &Point| (p.row.iter().zip(&curve).map(|(a, b)| a * b).sum::<f64>() - p.thrust).abs();
+        let error = |p: &GridPoint| (p.row.iter().zip(&curve).map(|(a, b)| a * b).sum::<f64>() - p.thrust).abs();
         let told = points.iter().filter(|p| p.flown);
         let (count, worst) = told.clone().fold((0.0, 0.0f64), |(n, worst), p| (n + 1.0, worst.max(error(p))));
         let mean = told.map(|p| p.weight * error(p)).sum::<f64>() / (count * FLOWN_WEIGHT);
@@ -75,7 +75,7 @@ pub fn nearest(
 }
 
 /// A command and a voltage.
-struct Point {
+struct GridPoint {
     /// Thrust of each of the terms' curves.
     row: Vec<f64>,
     /// Thrust of the law, and its derivative by each of its numbers.

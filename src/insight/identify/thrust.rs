@@ -6,7 +6,7 @@ use super::force_terms::{DRAG_AT, ForceTerms, OFFSET, SQUARE, TAU, THRUST};
 use super::inputs::Inputs;
 use super::law::Law;
 use super::mixer::{self, Mixer};
-use super::nearest::Flown;
+use super::nearest::FlownRange;
 use super::solve::Solution;
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::insight::prepare::rotors::command_per_speed;
@@ -95,7 +95,7 @@ pub fn fit(data: &Data, part: DataPart, terms: &ForceTerms) -> Option<ThrustFit>
         (None, None) => ThrustSource::Command,
     };
     let lag = law.fitted.values[TAU];
-    let flown = |inputs: &Inputs| Flown {
+    let flown = |inputs: &Inputs| FlownRange {
         commands: Force::new(data, inputs, without_drag.clone(), None).flown(lag),
         volts: flown_volts(data, terms.volts),
     };
@@ -126,7 +126,7 @@ fn behind_mixer(
     part: DataPart,
     terms: &ForceTerms,
     law: &Law,
-    flown: Flown,
+    flown: FlownRange,
     over_motors: ThrustFit,
 ) -> Option<ThrustFit> {
     let motors = over_motors.solution;

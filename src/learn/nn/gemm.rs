@@ -39,6 +39,22 @@ pub trait Finish<L: Lane> {
     unsafe fn end(&mut self, row: usize, block: usize, pair: [L; 2]);
 }
 
+/// How exactly products are taken.
+pub trait Precision<L: Lane> {
+    /// As [`multiply`].
+    fn multiply<F: Finish<L>>(rows: usize, inner: usize, a: Broadcast<L::Elem>, b: &[L::Elem], finish: F);
+}
+
+/// In the precision of the numbers.
+pub struct Exact;
+
+impl<L: Lane> Precision<L> for Exact {
+    #[inline(always)]
+    fn multiply<F: Finish<L>>(rows: usize, inner: usize, a: Broadcast<L::Elem>, b: &[L::Elem], finish: F) {
+        multiply::<L, F>(rows, inner, a, b, finish);
+    }
+}
+
 /// C[rows][64] = A[rows][inner] B[inner][64], and the sums of B's columns after it if [`Finish::SUMS`].
 ///
 /// # Panics

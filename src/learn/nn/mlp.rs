@@ -8,7 +8,7 @@
 use super::HIDDEN;
 use super::aligned::Aligned;
 use super::finish::{Accumulate, Activate, Descend};
-use super::gemm::{Broadcast, multiply};
+use super::gemm::{Broadcast, Precision};
 use crate::base::lane::{LANES, Lane, build};
 use std::ops::Range;
 
@@ -65,7 +65,7 @@ impl<E: Copy + Default> Hidden<E> {
 /// y = W3' tanh(W2' tanh(W1' x + b1) + b2) + b3 of the first `samples` of `pitch` samples: `x` `[inputs][pitch]`,
 /// `y` `[outputs][pitch]`.
 #[inline(always)]
-pub fn forward<L: Lane>(
+pub fn forward<L: Lane, P: Precision<L>>(
     shape: &Layout,
     p: &[L::Elem],
     samples: usize,
@@ -76,7 +76,7 @@ pub fn forward<L: Lane>(
 ) {
     let layer = |a: Broadcast<L::Elem>, p: &[L::Elem], out: &mut [L::Elem]| {
         let inner = p.len() / HIDDEN - 1;
-        multiply::<L, _>(samples, inner, a, p, Activate::new(&p[inner * HIDDEN..], out));
+        P::multiply(samples, inner, a, p, Activate::new(&p[inner * HIDDEN..], out));
     };
     layer(Broadcast { data: x, row: 1, column: pitch }, &p[shape.first()], &mut h.first);
     layer(Broadcast { data: &h.first, row: HIDDEN, column: 1 }, &p[shape.second()], &mut h.second);
@@ -118,7 +118,7 @@ pub fn turn<L: Lane>(shape: &Layout, p: &[L::Elem], turned: &mut [L::Elem]) {
 /// `[outputs][pitch]` the derivative by the outputs. Destroys `h`.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // the operands of one formula
-pub fn backward<L: Lane>(
+pub fn backward<L: Lane, P: Precision<L>>(
     shape: &Layout,
     p: &[L::Elem],
     turned: &[L::Elem],
@@ -134,13 +134,13 @@ pub fn backward<L: Lane>(
     let by_sample = |data| Broadcast { data, row: 1, column: pitch };
 
     let head = Accumulate::<_, false>(&mut g[shape.head()]);
-    multiply::<L, _>(shape.outputs, samples, by_feature(dy), second, head);
-    multiply::<L, _>(samples, shape.outputs, by_sample(dy), &p[shape.head()], Descend(second));
+    P::multiply(shape.outputs, samples, by_feature(dy), second, head);
+    P::multiply(samples, shape.outputs, by_sample(dy), &p[shape.head()], Descend(second));
 
     let inputs = Broadcast { data: first, row: 1, column: HIDDEN };
-    multiply::<L, _>(HIDDEN, samples, inputs, second, Accumulate::<_, true>(&mut g[shape.second()]));
+    P::multiply(HIDDEN, samples, inputs, second, Accumulate::<_, true>(&mut g[shape.second()]));
     let deltas = Broadcast { data: second, row: HIDDEN, column: 1 };
-    multiply::<L, _>(samples, HIDDEN, deltas, turned, Descend(first));
+    P::multiply(samples, HIDDEN, deltas, turned, Descend(first));
 
-    multiply::<L, _>(shape.inputs, samples, by_feature(x), first, Accumulate::<_, true>(&mut g[shape.first()]));
+    P::multiply(shape.inputs, samples, by_feature(x), first, Accumulate::<_, true>(&mut g[shape.first()]));
 }

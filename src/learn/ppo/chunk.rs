@@ -8,6 +8,7 @@ use super::loss::{Samples, TERMS, Weights, loss};
 use crate::base::lane::{LANES, Lane, Real, build};
 use crate::learn::nn::Network;
 use crate::learn::nn::aligned::Aligned;
+use crate::learn::nn::gemm::Precision;
 use crate::learn::nn::mlp::{self, Hidden, Layout};
 use crate::learn::policy::ACTIONS;
 
@@ -70,7 +71,7 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Chunk<E> {
     }
 
     /// Gradient and loss of `rows`.
-    pub fn run<L: Lane<Elem = E>>(&mut self, job: &Job<E>, rows: &[u32], worker: &mut Worker<E>) {
+    pub fn run<L: Lane<Elem = E>, P: Precision<L>>(&mut self, job: &Job<E>, rows: &[u32], worker: &mut Worker<E>) {
         self.gradient.fill(E::default());
         let zero = L::zero();
         let mut sums =
@@ -78,7 +79,7 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Chunk<E> {
         for rows in rows.chunks(TILE_ROWS) {
             L::vectorize(
                 #[inline(always)]
-                || tile::<L>(job, rows, worker, &mut sums, &mut self.gradient),
+                || tile::<L, P>(job, rows, worker, &mut sums, &mut self.gradient),
             );
         }
         self.terms = sums.terms.map(|t| t.sum().into());
@@ -94,7 +95,7 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Chunk<E> {
 
 /// Adds a tile's gradient to `gradient` and `sums`.
 #[inline(always)]
-fn tile<L: Lane>(
+fn tile<L: Lane, P: Precision<L>>(
     job: &Job<L::Elem>,
     rows: &[u32],
     worker: &mut Worker<L::Elem>,
@@ -105,11 +106,11 @@ fn tile<L: Lane>(
     let (network, samples) = (job.network, rows.len() * LANES);
     let p = &network.parameters;
     gather::<L>(job.batch.observations, network.inputs(), rows, x);
-    mlp::forward::<L>(&network.actor, p, samples, PITCH, x, actor, mean);
-    mlp::forward::<L>(&network.critic, p, samples, PITCH, x, critic, value);
+    mlp::forward::<L, P>(&network.actor, p, samples, PITCH, x, actor, mean);
+    mlp::forward::<L, P>(&network.critic, p, samples, PITCH, x, critic, value);
     differentiate_loss::<L>(job, rows, mean, value, sums);
     let mut back = |shape: &Layout, turned: &[L::Elem], h: &mut Hidden<L::Elem>, dy: &[L::Elem]| {
-        mlp::backward::<L>(shape, p, turned, samples, PITCH, x, h, dy, gradient);
+        mlp::backward::<L, P>(shape, p, turned, samples, PITCH, x, h, dy, gradient);
     };
     back(&network.actor, &job.turned[0], actor, mean);
     back(&network.critic, &job.turned[1], critic, value);

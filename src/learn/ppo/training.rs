@@ -181,6 +181,7 @@ impl<'a, E: Environment> Training<'a, E> {
         let c = self.config;
         let scheduled = c.learning_rate + (c.learning_rate_final - c.learning_rate) * share.clamp(0.0, 1.0);
         Hyper {
+            precision: self.config.precision,
             weights: Weights {
                 clip: c.clip,
                 entropy: c.entropy_at(share),

@@ -7,10 +7,13 @@ pub mod parts;
 
 use super::batch::Minibatch;
 use super::chunk::{Chunk, Job, Worker};
+use super::config::ProductPrecision;
 use super::loss::{TERMS, Weights};
 use crate::base::lane::{Kernel, LANES, Lane, Lane32, Level, Real, dispatch};
 use crate::learn::nn::adam::Adam;
 use crate::learn::nn::aligned::Aligned;
+use crate::learn::nn::bf16::Bf16;
+use crate::learn::nn::gemm::{Exact, Precision};
 use crate::learn::nn::{HIDDEN, Network, mlp};
 use crate::learn::policy;
 use rayon::prelude::*;
@@ -20,6 +23,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// What a step depends on besides the data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hyper {
+    pub precision: ProductPrecision,
     pub weights: Weights,
     pub learning_rate: f64,
     pub max_gradient_norm: f64,
@@ -84,7 +88,11 @@ impl Kernel for UpdateStep<'_> {
     type Output = Losses;
     #[inline(always)]
     fn run<L: Lane32>(self) -> Losses {
-        self.updater.step_with::<L>(self.network, self.batch, self.rows, self.hyper)
+        let Self { updater, network, batch, rows, hyper } = self;
+        match hyper.precision {
+            ProductPrecision::F32 => updater.step_with::<L, Exact>(network, batch, rows, hyper),
+            ProductPrecision::Bf16 => updater.step_with::<L, Bf16>(network, batch, rows, hyper),
+        }
     }
 }
 
@@ -101,20 +109,20 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Updater<E> {
     }
 
     /// The same step with blocks `L`: in double precision for tests.
-    pub fn step_with<L: Lane<Elem = E>>(
+    pub fn step_with<L: Lane<Elem = E>, P: Precision<L>>(
         &mut self,
         network: &mut Network<E>,
         batch: &Minibatch<E>,
         rows: &[u32],
         hyper: &Hyper,
     ) -> Losses {
-        let losses = self.differentiate::<L>(network, batch, rows, &hyper.weights);
+        let losses = self.differentiate::<L, P>(network, batch, rows, &hyper.weights);
         self.descend::<L>(network, hyper, losses.gradient_norm);
         losses
     }
 
     /// Loss and gradient alone.
-    pub fn differentiate<L: Lane<Elem = E>>(
+    pub fn differentiate<L: Lane<Elem = E>, P: Precision<L>>(
         &mut self,
         network: &Network<E>,
         batch: &Minibatch<E>,
@@ -140,7 +148,7 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Updater<E> {
                 let part = next.fetch_add(1, Ordering::Relaxed);
                 let Some(chunk) = chunks.get(part) else { break };
                 let rows = &rows[part * CHUNK_ROWS..rows.len().min((part + 1) * CHUNK_ROWS)];
-                chunk.lock().expect(POISONED).run::<L>(&job, rows, worker);
+                chunk.lock().expect(POISONED).run::<L, P>(&job, rows, worker);
             }
         });
         let norm = self.reduce::<L>(network, weights.entropy);

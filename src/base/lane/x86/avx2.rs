@@ -59,6 +59,12 @@ operations! {
     odd(a: W, x: W) -> W = _mm256_mul_epu32(_mm256_srli_epi64::<32>(a), x);
     mul_high(a: W, x: W) -> W = _mm256_blend_epi32::<0xaa>(_mm256_srli_epi64::<32>(even(a, x)), odd(a, x));
     mul_low(a: W, x: W) -> W = _mm256_blend_epi32::<0xaa>(even(a, x), _mm256_slli_epi64::<32>(odd(a, x)));
+    // To bf16: half of the last place is added, or a bit less where it is even.
+    odd_place(a: W) -> W = _mm256_and_si256(_mm256_srli_epi32::<16>(a), _mm256_set1_epi32(1));
+    near(a: W) -> W = _mm256_add_epi32(_mm256_add_epi32(a, _mm256_set1_epi32(0x7fff)), odd_place(a));
+    first_half(a: R) -> W = _mm256_srli_epi32::<16>(near(_mm256_castps_si256(a)));
+    second_half(a: R) -> W = _mm256_and_si256(near(_mm256_castps_si256(a)), _mm256_set1_epi32(-0x10000));
+    bf16_pairs(a: R, b: R) -> R = _mm256_castsi256_ps(_mm256_or_si256(first_half(a), second_half(b)));
 }
 
 /// An 8 x 8 transpose within registers.

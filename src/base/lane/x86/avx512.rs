@@ -51,6 +51,12 @@ operations! {
     // A shuffle of pairs under a mask moves and merges at once.
     mul_high(a: W, x: W) -> W = _mm512_mask_shuffle_epi32::<0xf5>(odd(a, x), 0x5555, even(a, x));
     mul_low(a: W, x: W) -> W = _mm512_mask_shuffle_epi32::<0xa0>(even(a, x), 0xaaaa, odd(a, x));
+    // To bf16: half of the last place is added, or a bit less where it is even.
+    odd_place(a: W) -> W = _mm512_and_si512(_mm512_srli_epi32::<16>(a), _mm512_set1_epi32(1));
+    near(a: W) -> W = _mm512_add_epi32(_mm512_add_epi32(a, _mm512_set1_epi32(0x7fff)), odd_place(a));
+    first_half(a: R) -> W = _mm512_srli_epi32::<16>(near(_mm512_castps_si512(a)));
+    second_half(a: R) -> W = _mm512_and_si512(near(_mm512_castps_si512(a)), _mm512_set1_epi32(-0x10000));
+    bf16_pairs(a: R, b: R) -> R = _mm512_castsi512_ps(_mm512_or_si512(first_half(a), second_half(b)));
 }
 
 /// Transposing through memory, 16 stores and 256 scalar moves, would be slow: registers are unpacked.

@@ -61,6 +61,12 @@ operations! {
     upper() -> W = _mm_set1_epi64x(0xffff_ffff_0000_0000_u64 as i64);
     mul_high(a: W, x: W) -> W = _mm_or_si128(_mm_srli_epi64::<32>(even(a, x)), _mm_and_si128(odd(a, x), upper()));
     mul_low(a: W, x: W) -> W = _mm_or_si128(_mm_andnot_si128(upper(), even(a, x)), _mm_slli_epi64::<32>(odd(a, x)));
+    // To bf16: half of the last place is added, or a bit less where it is even.
+    odd_place(a: W) -> W = _mm_and_si128(_mm_srli_epi32::<16>(a), _mm_set1_epi32(1));
+    near(a: W) -> W = _mm_add_epi32(_mm_add_epi32(a, _mm_set1_epi32(0x7fff)), odd_place(a));
+    first_half(a: R) -> W = _mm_srli_epi32::<16>(near(_mm_castps_si128(a)));
+    second_half(a: R) -> W = _mm_and_si128(near(_mm_castps_si128(a)), _mm_set1_epi32(-0x10000));
+    bf16_pairs(a: R, b: R) -> R = _mm_castsi128_ps(_mm_or_si128(first_half(a), second_half(b)));
 }
 
 #[inline(always)]

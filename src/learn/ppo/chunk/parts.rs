@@ -2,6 +2,7 @@
 
 use super::{Job, PITCH, Sums, TILE_ROWS, Worker, differentiate_loss, gather};
 use crate::base::lane::{LANES, Lane, Lane32};
+use crate::learn::nn::gemm::Precision;
 use crate::learn::nn::mlp;
 use crate::learn::policy::ACTIONS;
 
@@ -17,20 +18,26 @@ pub enum TilePart {
 
 /// Does `part` of all tiles of `rows`; its results are of no use.
 #[inline(always)]
-pub fn run<L: Lane32>(part: TilePart, job: &Job<f32>, rows: &[u32], worker: &mut Worker<f32>, gradient: &mut [f32]) {
+pub fn run<L: Lane32, P: Precision<L>>(
+    part: TilePart,
+    job: &Job<f32>,
+    rows: &[u32],
+    worker: &mut Worker<f32>,
+    gradient: &mut [f32],
+) {
     let zero = L::zero();
     let mut sums = Sums { terms: [zero; 6], mean: [zero; ACTIONS], log_std: [zero; ACTIONS], value: zero };
     for rows in rows.chunks(TILE_ROWS) {
         L::vectorize(
             #[inline(always)]
-            || tile::<L>(part, job, rows, worker, &mut sums, gradient),
+            || tile::<L, P>(part, job, rows, worker, &mut sums, gradient),
         );
     }
     std::hint::black_box(sums.value.sum());
 }
 
 #[inline(always)]
-fn tile<L: Lane<Elem = f32>>(
+fn tile<L: Lane<Elem = f32>, P: Precision<L>>(
     part: TilePart,
     job: &Job<f32>,
     rows: &[u32],
@@ -46,10 +53,10 @@ fn tile<L: Lane<Elem = f32>>(
         TilePart::Loss => return differentiate_loss::<L>(job, rows, mean, value, sums),
         TilePart::Forward | TilePart::ForwardAndBackward => {}
     }
-    mlp::forward::<L>(&network.actor, p, samples, PITCH, x, actor, mean);
-    mlp::forward::<L>(&network.critic, p, samples, PITCH, x, critic, value);
+    mlp::forward::<L, P>(&network.actor, p, samples, PITCH, x, actor, mean);
+    mlp::forward::<L, P>(&network.critic, p, samples, PITCH, x, critic, value);
     if part == TilePart::ForwardAndBackward {
-        mlp::backward::<L>(&network.actor, p, &job.turned[0], samples, PITCH, x, actor, mean, gradient);
-        mlp::backward::<L>(&network.critic, p, &job.turned[1], samples, PITCH, x, critic, value, gradient);
+        mlp::backward::<L, P>(&network.actor, p, &job.turned[0], samples, PITCH, x, actor, mean, gradient);
+        mlp::backward::<L, P>(&network.critic, p, &job.turned[1], samples, PITCH, x, critic, value, gradient);
     }
 }

@@ -4,10 +4,13 @@ use super::{CHUNK_ROWS, Hyper, Updater};
 use crate::base::lane::{Kernel, LANES, Lane32, Level, dispatch};
 use crate::base::stopwatch::best;
 use crate::learn::nn::aligned::Aligned;
+use crate::learn::nn::bf16::Bf16;
+use crate::learn::nn::gemm::Exact;
 use crate::learn::nn::{HIDDEN, Network, mlp};
 use crate::learn::ppo::batch::Minibatch;
 use crate::learn::ppo::chunk::parts::{self, TilePart};
 use crate::learn::ppo::chunk::{Chunk, Job, Worker};
+use crate::learn::ppo::config::ProductPrecision;
 use std::time::Duration;
 
 /// Seconds of the parts of one step. They are measured apart, so that they add up to the step only about.
@@ -116,7 +119,10 @@ impl Kernel for RunPart<'_> {
         match part {
             StepPart::Tile(part) => {
                 let job = Job { network, turned, batch, weights: &hyper.weights, share };
-                parts::run::<L>(part, &job, rows, worker, gradient);
+                match hyper.precision {
+                    ProductPrecision::F32 => parts::run::<L, Exact>(part, &job, rows, worker, gradient),
+                    ProductPrecision::Bf16 => parts::run::<L, Bf16>(part, &job, rows, worker, gradient),
+                }
             }
             StepPart::Tanh => L::vectorize(
                 #[inline(always)]
