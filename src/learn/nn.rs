@@ -12,7 +12,7 @@ use crate::base::lane::{LANES, Lane};
 use crate::base::rng::Sequence;
 use crate::learn::policy::ACTIONS;
 use aligned::Aligned;
-use gemm::Exact;
+use gemm::{Exact, Precision};
 use mlp::{Hidden, Layout};
 use std::ops::Range;
 
@@ -112,21 +112,37 @@ impl<E: Copy + Default> Network<E> {
 
     /// Mean action before squashing, `[4][64]`, and value, `[64]`, of a tile of observations `[inputs][64]`.
     #[inline(always)]
-    pub fn forward<L: Lane<Elem = E>>(&self, x: &[E], scratch: &mut Scratch<E>, mean: &mut [E], value: &mut [E]) {
-        self.forward_actor::<L>(x, scratch, mean);
-        self.forward_critic::<L>(x, scratch, value);
+    pub fn forward<L: Lane<Elem = E>, P: Precision<L>>(
+        &self,
+        x: &[E],
+        scratch: &mut Scratch<E>,
+        mean: &mut [E],
+        value: &mut [E],
+    ) {
+        self.actor_with::<L, P>(x, scratch, mean);
+        self.forward_critic::<L, P>(x, scratch, value);
     }
 
     /// Mean action before squashing alone, `[4][64]`.
     #[inline(always)]
     pub fn forward_actor<L: Lane<Elem = E>>(&self, x: &[E], scratch: &mut Scratch<E>, mean: &mut [E]) {
-        mlp::forward::<L, Exact>(&self.actor, &self.parameters, TILE_SAMPLES, TILE_SAMPLES, x, &mut scratch.0, mean);
+        self.actor_with::<L, Exact>(x, scratch, mean);
+    }
+
+    #[inline(always)]
+    fn actor_with<L: Lane<Elem = E>, P: Precision<L>>(&self, x: &[E], scratch: &mut Scratch<E>, mean: &mut [E]) {
+        mlp::forward::<L, P>(&self.actor, &self.parameters, TILE_SAMPLES, TILE_SAMPLES, x, &mut scratch.0, mean);
     }
 
     /// Value alone, `[64]`.
     #[inline(always)]
-    pub fn forward_critic<L: Lane<Elem = E>>(&self, x: &[E], scratch: &mut Scratch<E>, value: &mut [E]) {
-        mlp::forward::<L, Exact>(&self.critic, &self.parameters, TILE_SAMPLES, TILE_SAMPLES, x, &mut scratch.0, value);
+    pub fn forward_critic<L: Lane<Elem = E>, P: Precision<L>>(
+        &self,
+        x: &[E],
+        scratch: &mut Scratch<E>,
+        value: &mut [E],
+    ) {
+        mlp::forward::<L, P>(&self.critic, &self.parameters, TILE_SAMPLES, TILE_SAMPLES, x, &mut scratch.0, value);
     }
 }
 

@@ -24,7 +24,9 @@ use serde::{Deserialize, Serialize};
 pub const DEFAULT: &str = "a2rl.toml";
 
 const LIBRARY: Library =
-    Library { kind: "configuration", folder: "configs", builtin: &[("a2rl", include_str!("../../configs/a2rl.toml"))] };
+    Library { kind: "configuration", folder: "configs", builtin: &[("a2rl", A2RL), ("a2rl_many_cores", MANY_CORES)] };
+const A2RL: &str = include_str!("../../configs/a2rl.toml");
+const MANY_CORES: &str = include_str!("../../configs/a2rl_many_cores.toml");
 
 /// Everything that decides the outcome of a training run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

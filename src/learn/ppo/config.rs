@@ -44,10 +44,9 @@ impl Check for BudgetConfig {
 }
 
 /// Factors of the optimiser's matrix products. Sums, activations, weights and their steps are singles in both.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ProductPrecision {
-    #[default]
     F32,
     /// Rounded to the upper half of a single, which processors with an instruction for it multiply several times as
     /// fast; without one it is slow.
@@ -100,7 +99,6 @@ pub struct PpoConfig {
     pub log_std_initial: f64,
     /// "f32", or "bf16": factors of the optimiser's matrix products, which some processors multiply several times as
     /// fast. A policy is trained in singles but for that, and flies in singles.
-    #[serde(default)]
     pub precision: ProductPrecision,
 }
 

@@ -1,9 +1,12 @@
 //! Collecting experience: every tile of 64 environments flies the whole rollout on one thread, policy, environment and
 //! resets included, while its state and activations stay in cache.
 
+use super::config::ProductPrecision;
 use super::{Environment, Step};
 use crate::base::lane::{Bits, Kernel, LANES, Lane32, Level, build, dispatch, each};
 use crate::base::rng::{Philox, RngStream, normals};
+use crate::learn::nn::bf16::Bf16;
+use crate::learn::nn::gemm::{Exact, Precision};
 use crate::learn::nn::{Network, TILE_BLOCKS, TILE_SAMPLES};
 use crate::learn::policy;
 use rayon::prelude::*;
@@ -160,6 +163,7 @@ pub fn collect<E: Environment>(
     level: Level,
     environment: &E,
     network: &Network<f32>,
+    precision: ProductPrecision,
     rng: &Philox,
     tiles: &mut [Tile<E>],
     rollout: &mut Rollout,
@@ -167,13 +171,14 @@ pub fn collect<E: Environment>(
 ) {
     let steps = rollout.tile_rows / TILE_BLOCKS;
     tiles.par_iter_mut().zip(rollout.tiles()).for_each(|(tile, out)| {
-        dispatch(level, Collect { environment, network, rng, tile, out, steps, first_step });
+        dispatch(level, Collect { environment, network, precision, rng, tile, out, steps, first_step });
     });
 }
 
 struct Collect<'a, E: Environment> {
     environment: &'a E,
     network: &'a Network<f32>,
+    precision: ProductPrecision,
     rng: &'a Philox,
     tile: &'a mut Tile<E>,
     out: TileRows<'a>,
@@ -186,7 +191,17 @@ impl<E: Environment> Kernel for Collect<'_, E> {
 
     #[inline(always)]
     fn run<L: Lane32>(self) {
-        let Collect { environment, network, rng, tile, mut out, steps, first_step } = self;
+        match self.precision {
+            ProductPrecision::F32 => self.fly::<L, Exact>(),
+            ProductPrecision::Bf16 => self.fly::<L, Bf16>(),
+        }
+    }
+}
+
+impl<E: Environment> Collect<'_, E> {
+    #[inline(always)]
+    fn fly<L: Lane32, P: Precision<L>>(self) {
+        let Collect { environment, network, rng, tile, mut out, steps, first_step, .. } = self;
         let log_std = each!(network.log_std(), |s| L::splat(s));
         let mut blocks: [E::Block<L>; TILE_BLOCKS] = std::array::from_fn(|b| environment.load(&tile.saved[b]));
         let mut seen = vec![0.0f32; environment.observations() * TILE_SAMPLES];
@@ -196,7 +211,7 @@ impl<E: Environment> Kernel for Collect<'_, E> {
 
         for t in 0..steps {
             look(environment, &blocks, &mut seen);
-            network.forward::<L>(&seen, &mut scratch, &mut mean, &mut value);
+            network.forward::<L, P>(&seen, &mut scratch, &mut mean, &mut value);
             let mut truncated_any = 0;
             for (b, block) in blocks.iter_mut().enumerate() {
                 let row = t * TILE_BLOCKS + b;
@@ -212,7 +227,7 @@ impl<E: Environment> Kernel for Collect<'_, E> {
             // The critic sees where truncated episodes stopped, before they begin anew.
             if truncated_any != 0 {
                 look(environment, &blocks, &mut seen);
-                network.forward_critic::<L>(&seen, &mut scratch, &mut value);
+                network.forward_critic::<L, P>(&seen, &mut scratch, &mut value);
                 out.final_values[t * TILE_SAMPLES..(t + 1) * TILE_SAMPLES].copy_from_slice(&value);
             }
             for (b, block) in blocks.iter_mut().enumerate() {
@@ -221,7 +236,7 @@ impl<E: Environment> Kernel for Collect<'_, E> {
             }
         }
         look(environment, &blocks, &mut seen);
-        network.forward_critic::<L>(&seen, &mut scratch, out.last_values);
+        network.forward_critic::<L, P>(&seen, &mut scratch, out.last_values);
         for (saved, block) in tile.saved.iter_mut().zip(&blocks) {
             *saved = environment.save(block, &mut tile.tally);
         }

@@ -137,7 +137,8 @@ impl<'a, E: Environment> Training<'a, E> {
     /// Collects one rollout.
     pub fn collect(&mut self, environment: &E) {
         let first_step = (self.iterations * self.config.rollout) as u32;
-        collect(self.level, environment, &self.network, &self.rng, &mut self.tiles, &mut self.rollout, first_step);
+        let (network, precision) = (&self.network, self.config.precision);
+        collect(self.level, environment, network, precision, &self.rng, &mut self.tiles, &mut self.rollout, first_step);
     }
 
     /// Generalised advantages of the rollout, normalised over the batch; returns the explained variance and their

@@ -11,13 +11,15 @@ struct Later {
     before: &'static str,
 }
 
-const LATER: [Later; 4] = [
+const LATER: [Later; 5] = [
     // Penalties were whole from the first step on.
     Later { key: "ppo.penalty_begin", before: "1.0" },
     Later { key: "ppo.penalty_full", before: "0.0" },
     // The entropy was that of the Gaussian before its tanh, with the same weight to the end.
     Later { key: "ppo.entropy_squashed", before: "false" },
     Later { key: "ppo.entropy_end", before: "1.0" },
+    // Products were singles'.
+    Later { key: "ppo.precision", before: "'f32'" },
 ];
 
 /// Whether `key` came later.

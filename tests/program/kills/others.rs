@@ -67,7 +67,7 @@ fn a_killed_diagnosis_leaves_whole_files_or_none() {
     const FILES: [&str; 3] = ["found.json", "extended.toml", "page.html"];
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    done(at, "fly --pilot --vehicle seed_class --seconds 25 --out flight.mcap");
+    done(at, "fly --pilot --vehicle seed_class --seconds 40 --out flight.mcap");
     let diagnose =
         "diagnose flight.mcap --vehicle seed_class --json found.json --extend extended.toml --report page.html";
     let began = Instant::now();
