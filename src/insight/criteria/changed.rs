@@ -24,7 +24,7 @@ criteria! {
     /// Of the discharge.
     CHANGED_DISCHARGE = 0.2, Assumed("that of a move against the base that matters");
     /// What a changed effect does after a second, m/s.
-    CHANGED_IMPACT = 0.02, Assumed("of eight pairs of the third truth, changes that were found did 0.8 and more, a false one 0.017");
+    CHANGED_IMPACT = 0.02, Assumed("of eight pairs, changes that were found did 0.8 and more, a false one 0.017");
     /// Change of a sensor's constant error that matters, in small typical sizes.
     CHANGED_BIAS = 4.0, Assumed("it is another after every switching on");
     /// Differences that are looked for at most.

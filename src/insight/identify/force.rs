@@ -75,8 +75,8 @@ impl<'a> Force<'a> {
         if self.terms.drag { &[0, 1, 2] } else { &[2] }
     }
 
-    /// Thrust over mass of the curve `c`, the mean over what lifts, of every flight; with a `power` of the voltage, where
-    /// the terms have one.
+    /// Thrust over mass of the curve `c`, the mean over what lifts, of every flight; with a `power` of the voltage,
+    /// where the terms have one.
     fn thrust(&self, c: &[f64; 6], tau: f64, power: f64) -> Vec<Vec<f64>> {
         let one = |(f, flight): (usize, &PreparedFlight)| {
             let inputs = self.inputs.at(f, &flight.time, tau);
