@@ -1,8 +1,7 @@
 //! The matrix product behind every layer with its factors rounded to bf16, and sums, activations and weights in single
 //! precision.
 //!
-//! Factors are packed in pairs just before they are multiplied, in memory that stays in cache: that costs about a tenth
-//! of what the product in singles would.
+//! Factors are packed in pairs just before they are multiplied, in memory that stays in cache.
 
 use super::HIDDEN;
 use super::aligned::Aligned;
@@ -29,12 +28,16 @@ impl Packed {
         Packed { a: Aligned::zeros(0), b: Aligned::zeros(0), c: Aligned::zeros(0) }
     }
 
+    /// Makes room; what was there is lost.
     fn reserve(&mut self, rows: usize, words: usize) {
-        let enough = self.a.len() >= rows * words && self.b.len() >= words * COLUMNS && self.c.len() >= rows * COLUMNS;
-        if !enough {
-            let [a, b] = [rows * words, words * COLUMNS].map(Aligned::zeros);
-            *self = Packed { a, b, c: Aligned::zeros(rows * COLUMNS) };
+        fn grow<E: Copy + Default>(of: &mut Aligned<E>, least: usize) {
+            if of.len() < least {
+                *of = Aligned::zeros(least);
+            }
         }
+        grow(&mut self.a, rows * words);
+        grow(&mut self.b, words * COLUMNS);
+        grow(&mut self.c, rows * COLUMNS);
     }
 }
 
