@@ -49,6 +49,15 @@ fn one_thread_is_many_threads_bit_for_bit() {
     assert_ne!(seed("seed=1"), seed("seed=2"));
 }
 
+/// In bf16 as well, on whatever multiplies here; and it is another policy.
+#[test]
+fn in_bf16_too() {
+    let settings = [&SMALL[..], &["ppo.precision='bf16'"]].concat();
+    let [one, three] = [1, 3].map(|threads| bits(&run(threads, Level::best(), &settings, &mut Log::default())));
+    assert_eq!(one, three);
+    assert_ne!(one, bits(&run(2, Level::best(), &SMALL, &mut Log::default())));
+}
+
 /// Snapshots are spread over the budget, end with the final policy, and a stop ends the training with what there is.
 #[test]
 fn snapshots_and_stopping() {

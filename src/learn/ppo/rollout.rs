@@ -157,29 +157,33 @@ impl<E: Environment> Tile<E> {
     }
 }
 
+/// The stochastic policy that flies.
+#[derive(Clone, Copy)]
+pub struct Explorer<'a> {
+    pub network: &'a Network<f32>,
+    pub precision: ProductPrecision,
+    pub rng: &'a Philox,
+}
+
 /// Flies `steps` steps in every tile under the stochastic policy, on the current rayon pool. `first_step` is the number
 /// of steps flown before, part of the random numbers' counter.
 pub fn collect<E: Environment>(
     level: Level,
     environment: &E,
-    network: &Network<f32>,
-    precision: ProductPrecision,
-    rng: &Philox,
+    explorer: Explorer,
     tiles: &mut [Tile<E>],
     rollout: &mut Rollout,
     first_step: u32,
 ) {
     let steps = rollout.tile_rows / TILE_BLOCKS;
     tiles.par_iter_mut().zip(rollout.tiles()).for_each(|(tile, out)| {
-        dispatch(level, Collect { environment, network, precision, rng, tile, out, steps, first_step });
+        dispatch(level, Collect { environment, explorer, tile, out, steps, first_step });
     });
 }
 
 struct Collect<'a, E: Environment> {
     environment: &'a E,
-    network: &'a Network<f32>,
-    precision: ProductPrecision,
-    rng: &'a Philox,
+    explorer: Explorer<'a>,
     tile: &'a mut Tile<E>,
     out: TileRows<'a>,
     steps: usize,
@@ -191,7 +195,7 @@ impl<E: Environment> Kernel for Collect<'_, E> {
 
     #[inline(always)]
     fn run<L: Lane32>(self) {
-        match self.precision {
+        match self.explorer.precision {
             ProductPrecision::F32 => self.fly::<L, Exact>(),
             ProductPrecision::Bf16 => self.fly::<L, Bf16>(),
         }
@@ -201,7 +205,8 @@ impl<E: Environment> Kernel for Collect<'_, E> {
 impl<E: Environment> Collect<'_, E> {
     #[inline(always)]
     fn fly<L: Lane32, P: Precision<L>>(self) {
-        let Collect { environment, network, rng, tile, mut out, steps, first_step, .. } = self;
+        let Collect { environment, explorer, tile, mut out, steps, first_step } = self;
+        let Explorer { network, rng, .. } = explorer;
         let log_std = each!(network.log_std(), |s| L::splat(s));
         let mut blocks: [E::Block<L>; TILE_BLOCKS] = std::array::from_fn(|b| environment.load(&tile.saved[b]));
         let mut seen = vec![0.0f32; environment.observations() * TILE_SAMPLES];

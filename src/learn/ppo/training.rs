@@ -4,7 +4,7 @@ use super::awake::awake;
 use super::batch::Minibatch;
 use super::config::PpoConfig;
 use super::loss::Weights;
-use super::rollout::{Rollout, Tile, collect};
+use super::rollout::{Explorer, Rollout, Tile, collect};
 use super::state::{TrainingState, rate_after};
 use super::update::parts::{self, StepParts};
 use super::update::{Hyper, Losses, Updater};
@@ -137,8 +137,8 @@ impl<'a, E: Environment> Training<'a, E> {
     /// Collects one rollout.
     pub fn collect(&mut self, environment: &E) {
         let first_step = (self.iterations * self.config.rollout) as u32;
-        let (network, precision) = (&self.network, self.config.precision);
-        collect(self.level, environment, network, precision, &self.rng, &mut self.tiles, &mut self.rollout, first_step);
+        let explorer = Explorer { network: &self.network, precision: self.config.precision, rng: &self.rng };
+        collect(self.level, environment, explorer, &mut self.tiles, &mut self.rollout, first_step);
     }
 
     /// Generalised advantages of the rollout, normalised over the batch; returns the explained variance and their

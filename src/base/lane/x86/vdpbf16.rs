@@ -33,6 +33,13 @@ pub unsafe fn product(rows: usize, words: usize, a: *const u32, b: *const u32, c
     }
 }
 
+/// The same bits under the name that the instruction's function wants.
+#[inline(always)]
+fn pairs(words: __m512i) -> __m512bh {
+    // SAFETY: both are 512 bits, of which all values are valid.
+    unsafe { std::mem::transmute::<__m512i, __m512bh>(words) }
+}
+
 #[target_feature(enable = "avx512f,avx512bf16")]
 unsafe fn tile<const N: usize>(words: usize, a: *const u32, b: *const u32, c: *mut f32) {
     // SAFETY: promised by the caller.
@@ -46,8 +53,7 @@ unsafe fn tile<const N: usize>(words: usize, a: *const u32, b: *const u32, c: *m
             for (i, row) in sums.iter_mut().enumerate() {
                 let left = _mm512_set1_epi32(a.add(i * words + k).read() as i32);
                 for (sum, right) in row.iter_mut().zip(right) {
-                    // The same bits under another name.
-                    *sum = _mm512_dpbf16_ps(*sum, std::mem::transmute(left), std::mem::transmute(right));
+                    *sum = _mm512_dpbf16_ps(*sum, pairs(left), pairs(right));
                 }
             }
         }
