@@ -50,15 +50,13 @@ fn example() -> (Network<f64>, [Vec<f64>; 5]) {
     (network, data)
 }
 
+fn batch<E>([observations, z, log_prob, advantages, returns]: &[Vec<E>; 5]) -> Minibatch<'_, E> {
+    Minibatch { observations, z, log_prob, advantages, returns }
+}
+
 fn check(name: &str, weights: Weights) {
-    let (mut network, [observations, z, log_prob, advantages, returns]) = example();
-    let batch = Minibatch {
-        observations: &observations,
-        z: &z,
-        log_prob: &log_prob,
-        advantages: &advantages,
-        returns: &returns,
-    };
+    let (mut network, data) = example();
+    let batch = batch(&data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let mut updater = Updater::new(&network);
     let losses = updater.differentiate::<Portable<f64>, Exact>(&network, &batch, &rows, &weights);
@@ -114,15 +112,8 @@ fn in_bf16_the_gradient_is_nearly_the_same() {
     let mut parameters = Aligned::zeros(network.parameters.len());
     parameters.iter_mut().zip(network.parameters.iter()).for_each(|(to, from)| *to = *from as f32);
     let network = Network { actor: network.actor, critic: network.critic, parameters };
-    let [observations, z, log_prob, advantages, returns] =
-        data.map(|x| x.into_iter().map(|x| x as f32).collect::<Vec<_>>());
-    let batch = Minibatch {
-        observations: &observations,
-        z: &z,
-        log_prob: &log_prob,
-        advantages: &advantages,
-        returns: &returns,
-    };
+    let data = data.map(|x| x.into_iter().map(|x| x as f32).collect());
+    let batch = batch(&data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let weights = Weights { clip: 0.3, entropy: 0.01, squashed: true, magnitude: 0.15, value: 0.5 };
     let [mut exact, mut rounded] = [Updater::new(&network), Updater::new(&network)];

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Four runs of a second at most.
-const TINY: &str = "
+pub const TINY: &str = "
 steps = 4000
 seeds = 2
 agents = 8

@@ -13,7 +13,7 @@ use crate::insight::estimate::range::{DRAG_1_M, TIME_CONSTANT_S};
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::insight::prepare::flight::PreparedFlight;
 use crate::model::dynamics::force_in_body;
-use crate::model::thrust::shape::{self, ThrustLimit};
+use crate::model::thrust::shape::{self, MOST_VOLTAGE_POWER, ThrustLimit};
 use crate::model::thrust::specific_thrust;
 use nalgebra::DMatrix;
 
@@ -23,9 +23,8 @@ const VOLTAGE_HZ: f64 = 0.5;
 /// Least drag over mass of an axis, 1/m: without any, an ellipsoid has no size.
 const LEAST_DRAG_1_M: f64 = 1e-4;
 
-/// Power of the voltage to begin with, and most: a motor at a given duty, and the sag under load on top.
+/// Power of the voltage to begin with: a motor at a given duty.
 const SQUARED: f64 = 2.0;
-const MOST_POWER: f64 = 3.0;
 
 /// Measured and predicted specific force.
 pub struct Force<'a> {
@@ -57,13 +56,7 @@ impl<'a> Force<'a> {
 
     /// The same with other terms of the same channels, bias and filter.
     pub fn with(&self, terms: ForceTerms) -> Self {
-        Self {
-            data: self.data,
-            inputs: self.inputs,
-            measured: self.measured.clone(),
-            terms,
-            voltage: self.voltage.clone(),
-        }
+        Self { measured: self.measured.clone(), voltage: self.voltage.clone(), terms, ..*self }
     }
 
     pub fn terms(&self) -> &ForceTerms {
@@ -200,7 +193,7 @@ impl<'a> Force<'a> {
             out.extend([Unknown { start: 0.0, low: -5.0, high: 5.0, step: 1e-3, linear: true }; 2]);
         }
         if self.terms.power_at_v.is_some() {
-            out.push(Unknown { start: SQUARED, low: 0.0, high: MOST_POWER, step: 1e-2, linear: false });
+            out.push(Unknown { start: SQUARED, low: 0.0, high: MOST_VOLTAGE_POWER, step: 1e-2, linear: false });
         }
         out
     }

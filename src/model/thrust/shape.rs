@@ -20,7 +20,7 @@ const LEAST_LIFT: f64 = 1.02;
 const LEAST_SLOPE: f64 = 0.5;
 const MOST_POWER: i32 = 3;
 /// Power of the voltage with which thrust grows at most: 2 for a motor at a given duty, and the sag under load on top.
-const MOST_VOLTAGE_POWER: f64 = 3.0;
+pub const MOST_VOLTAGE_POWER: f64 = 3.0;
 
 /// The thrust of the curve at `u` and `v` is this row times its coefficients.
 pub fn at(u: f64, v: f64) -> [f64; 6] {

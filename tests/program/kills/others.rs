@@ -2,29 +2,12 @@
 //! again is the same. `RACER_KILLS` says how many moments of each are tried.
 
 use super::{killed, moments};
+use crate::study::TINY;
 use crate::support::racer;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use std::path::Path;
 use std::time::{Duration, Instant};
-
-/// Four runs of a fraction of a second.
-const STUDY: &str = "
-steps = 4000
-seeds = 2
-agents = 8
-
-[set]
-track = 'square'
-ppo.environments = 64
-ppo.minibatches = 2
-ppo.epochs = 1
-eval.max_steps = 60
-budget.snapshots = 2
-
-[grid]
-ppo.rollout = [16, 32]
-";
 
 /// Runs what has to succeed.
 fn done(at: &Path, args: &str) -> String {
@@ -42,7 +25,7 @@ fn a_killed_study_goes_on_to_the_same_tables() {
     const TABLES: [&str; 5] = ["runs.csv", "settings.csv", "axes.csv", "ranking.csv", "results.json"];
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    std::fs::write(at.join("tiny.toml"), STUDY).unwrap();
+    std::fs::write(at.join("tiny.toml"), TINY).unwrap();
     let began = Instant::now();
     done(at, "study tiny.toml --out undisturbed");
     let all_s = began.elapsed().as_secs_f64();
