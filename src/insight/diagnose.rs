@@ -37,6 +37,7 @@ pub mod gain;
 pub mod gusts;
 pub mod horizon;
 pub mod impact;
+mod imu_seen;
 pub mod judge;
 pub mod keep;
 pub mod kinematics;

@@ -24,7 +24,7 @@ pub use stages::{
     Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, CommandSetpoint, RelativeWind, Sensed,
     ThrustInput,
 };
-pub use values::EffectValues;
+pub use values::{EffectValues, SensorErrors};
 
 /// One effect. Every function may change what passes its stage, by the effect's parameters `k` in the order of the
 /// card; those it does not write leave their stage alone.
@@ -77,16 +77,18 @@ macro_rules! effects {
             battery_load BatteryLoad, thrust_input ThrustInput, relative_wind RelativeWind,
             aerodynamic_forces AerodynamicForces,);
 
-        /// Every sensor's effect on a reading; `k` holds the parameters of all of [`LOG`].
-        #[inline(always)]
-        pub fn sense(k: &[f64], sensed: &mut Sensed) {
-            $({
-                const AT: usize = offset(&LOG, LogIndex::$Log as usize);
-                const N: usize = $log::$Log::CARD.parameters.len();
-                if k[AT..AT + N].iter().any(|k| *k != 0.0) {
-                    $log::$Log::sense(&k[AT..AT + N], sensed);
-                }
-            })*
+        impl SensorErrors<'_> {
+            /// Every sensor's effect on a reading.
+            #[inline(always)]
+            pub fn sense(&self, sensed: &mut Sensed) {
+                $(
+                    if self.active & 1 << LogIndex::$Log as u32 != 0 {
+                        const AT: usize = offset(&LOG, LogIndex::$Log as usize);
+                        const N: usize = $log::$Log::CARD.parameters.len();
+                        $log::$Log::sense(&self.numbers[AT..AT + N], sensed);
+                    }
+                )*
+            }
         }
     };
     (@stage $($model:ident::$Model:ident)*; ) => {};

@@ -98,7 +98,7 @@ fn passages() -> Vec<Passage> {
     let sense: fn(&[f64], &mut [f64]) = |k, v| {
         let (rates, acceleration, force) = (three(v), three(&v[3..]), three(&v[6..]));
         let mut s = Sensed { rates, acceleration, force, throttle: v[9] };
-        effects::sense(&k[COUNT..], &mut s);
+        effects::SensorErrors::new(&k[COUNT..]).sense(&mut s);
         v[..3].copy_from_slice(&s.rates);
         v[6..9].copy_from_slice(&s.force);
     };

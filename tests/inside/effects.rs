@@ -456,7 +456,7 @@ fn sensors_read_as_their_equations_say() {
         k[span.start - COUNT..span.end - COUNT].copy_from_slice(sizes);
         let mut sensed =
             Sensed { rates: [1.0, 2.0, 3.0], acceleration: [0.0; 3], force: [0.0, 0.0, 10.0], throttle: 0.5 };
-        effects::sense(&k, &mut sensed);
+        effects::SensorErrors::new(&k).sense(&mut sensed);
         (sensed.rates, sensed.force)
     };
     assert_eq!(read("stream_offset", &[0.01]), ([1.0, 2.0, 3.0], [0.0, 0.0, 10.0]));

@@ -7,7 +7,7 @@ use super::numbers::{
 use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::extended::Extended;
 use crate::model::dynamics::{Factors, Parameters, drag};
-use crate::model::effects::{self, Card, Quantities, Role};
+use crate::model::effects::{self, Card, Quantities, Role, SensorErrors};
 use crate::model::vehicle::{MaxRates, TimeConstants, Vehicle};
 
 /// All numbers, and the vehicle they are about.
@@ -51,8 +51,8 @@ impl Model {
     }
 
     /// The parameters of sensors and chance at `x`.
-    pub fn sensors<'a>(&self, x: &'a [f64]) -> &'a [f64] {
-        &x[LOG_AT..FORMS]
+    pub fn sensors<'a>(&self, x: &'a [f64]) -> SensorErrors<'a> {
+        SensorErrors::new(&x[LOG_AT..FORMS])
     }
 
     /// The first parameters, at `x`, of the effects that act on a log in this way; 0 where there is none.

@@ -4,17 +4,17 @@ use super::actuator_response::{ActuatorResponse, actuator_response, body_rates, 
 use super::bends;
 use super::channels::{CHANNELS, TURN, VOLTAGE};
 use super::forms::{self, TAPS_S};
-use super::kinematics::{self, lagged, slopes};
+use super::imu_seen::{LaggedForce, ShiftedImu, slopes};
+use super::kinematics;
 use super::model::Model;
 use super::numbers::BEGIN;
 use super::record::FlightRecord;
 use crate::base::lane::{build, fused};
 use crate::flight::lowpass::LowPass;
-use crate::flight::series::period;
 use crate::model::attitude::dot;
 use crate::model::dynamics::battery::discharged;
 use crate::model::dynamics::extended::{self, Extended, ForceInputs, TurnError};
-use crate::model::effects::{self, Card, Quantities, Quantity, Role, Sensed};
+use crate::model::effects::{Card, Quantities, Quantity, Role, Sensed};
 use std::sync::Arc;
 
 /// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
@@ -38,6 +38,9 @@ pub struct Predicted {
     pub force: Arc<Vec<[f64; 3]>>,
     /// By channel, in the units of [`FlightRecord`]; empty where the log lacks it.
     pub channels: [Arc<Vec<f64>>; CHANNELS],
+    /// The IMU on the odometry's clock, and its specific force as a late velocity sees it.
+    shifted: Arc<ShiftedImu>,
+    lagged: Arc<LaggedForce>,
 }
 
 impl Predicted {
@@ -99,7 +102,8 @@ impl Predicted {
             self.sense(&p, dirty, model, record, x);
         }
         if dirty.has(Quantity::Integrated) {
-            let all = kinematics::integrate(model, record, x, &self.command);
+            self.shifted = ShiftedImu::renewed(self.shifted, record, kinematics::offsets(model, record, x));
+            let all = kinematics::integrate(model, record, x, &self.command, &self.shifted);
             all.into_iter().enumerate().for_each(|(c, values)| self.channels[TURN + c] = values.into());
         }
         self
@@ -125,7 +129,7 @@ impl Predicted {
             modelled.push(v);
         }
         let mut error: Vec<f64> = record.voltage.iter().zip(&modelled).map(|(m, v)| m - v).collect();
-        if let Some(filter) = LowPass::new(VOLTAGE_HZ, period(&record.time)) {
+        if let Some(filter) = LowPass::new(VOLTAGE_HZ, record.period_s) {
             filter.run(&mut error);
         }
         self.voltage = modelled.iter().zip(error).map(|(v, e)| v + e).collect::<Vec<_>>().into();
@@ -137,12 +141,13 @@ impl Predicted {
     fn push(&mut self, p: &Extended<f64>, record: &FlightRecord, [tau, gravity]: [f64; 2]) {
         let since = record.since();
         let mut out = Vec::with_capacity(record.time.len());
-        let force = |i: usize| -> [f64; 3] { build!(|k| record.fine.imu[3 + k][i]) };
-        let late = if tau > 0.0 { Some(lagged(record, tau, force)) } else { None };
+        if tau > 0.0 {
+            self.lagged = LaggedForce::renewed(std::mem::take(&mut self.lagged), record, tau);
+        }
         for i in 0..record.time.len() {
             let mut velocity: [f64; 3] = build!(|k| record.velocity[k][i]);
-            if let Some(late) = &late {
-                let mut gains = late[i * record.fine.every];
+            if tau > 0.0 {
+                let mut gains = self.lagged.world[i * record.fine.every];
                 gains[2] -= gravity;
                 for k in 0..3 {
                     velocity[k] += tau * dot(record.axes[i][k], gains);
@@ -194,7 +199,7 @@ impl Predicted {
                 let throttle = extended::throttle(self.command[i][3]);
                 let (rates, force) = (self.rates[i], self.force[i]);
                 let mut sensed = Sensed { rates, acceleration: acceleration[i], force, throttle };
-                effects::sense(k, &mut sensed);
+                k.sense(&mut sensed);
                 for j in 0..3 {
                     // The gyro's own lateness, on top of what the sensor makes of it.
                     sum[j] += sensed.rates[j] - rates[j] + self.seen_rates[i][j];
@@ -214,7 +219,7 @@ impl Predicted {
     /// What the response has beside a lag and a delay: the rates' changes of a moment ago, by `taps`.
     fn bent_rates(&self, record: &FlightRecord, taps: &[[f64; TAPS_S.len()]; 3]) -> Vec<[f64; 3]> {
         let slope = slopes(&record.time, &self.seen_rates);
-        let before = TAPS_S.map(|tap| (tap / period(&record.time)).round() as usize);
+        let before = TAPS_S.map(|tap| (tap / record.period_s).round() as usize);
         let known = |i: usize, k: usize| if slope[i][k].is_finite() { slope[i][k] } else { 0.0 };
         let bent = |i: usize, k: usize| {
             (0..TAPS_S.len()).map(|j| taps[k][j] * known(i.saturating_sub(before[j]), k)).sum::<f64>()

@@ -42,8 +42,9 @@ pub struct FlightRecord {
     /// By how much the odometry's clock was moved to the gyro's, s.
     pub moved: f64,
     pub fine: Fine,
-    /// Of the thinned IMU, s.
+    /// Of the thinned IMU, and its period, s.
     pub time: Vec<f64>,
+    pub period_s: f64,
     pub usable: Vec<bool>,
     /// Stretch of time of each sample, counted over all flights.
     pub block: Vec<u32>,
@@ -137,9 +138,10 @@ impl FlightRecord {
             windows: Vec::new(),
             bins: Vec::new(),
             mixed: Vec::new(),
+            period_s: period(&time),
             time,
         };
-        out.bins = out.divide(BIN_S.max(period(&out.time) * 0.99));
+        out.bins = out.divide(BIN_S.max(out.period_s * 0.99));
         out.mixed = out.mixed(log);
         if turns && often_enough(&log.odometry) {
             out.windows = out.stretches();

@@ -1,7 +1,7 @@
 //! Numbers of all effects of the simulator, and which of them are present.
 
 use super::card::RateResponse;
-use super::{COUNT, MODEL, offset};
+use super::{COUNT, Card, LOG, MODEL, offset};
 use crate::base::lane::Lane;
 
 /// The bits of the effects under which the rates follow in this way.
@@ -27,14 +27,38 @@ pub struct EffectValues<R> {
     pub(super) active: u64,
 }
 
+/// Bit i: effect i of `cards` has a number that is not 0.
+fn active(cards: &[&Card], numbers: &[f64]) -> u64 {
+    let present = |i: usize| {
+        let from = offset(cards, i);
+        numbers[from..from + cards[i].parameters.len()].iter().any(|k| *k != 0.0)
+    };
+    (0..cards.len()).filter(|&i| present(i)).fold(0, |all, i| all | 1 << i)
+}
+
 impl EffectValues<f64> {
     /// Effects with a number that is not 0 are present.
     pub fn new(numbers: [f64; COUNT]) -> Self {
-        let present = |i: usize| {
-            let from = offset(&MODEL, i);
-            numbers[from..from + MODEL[i].parameters.len()].iter().any(|k| *k != 0.0)
-        };
-        EffectValues { numbers, active: (0..MODEL.len()).filter(|&i| present(i)).fold(0, |all, i| all | 1 << i) }
+        EffectValues { numbers, active: active(&MODEL, &numbers) }
+    }
+}
+
+/// The parameters of all effects of [`LOG`], and which of these are present.
+#[derive(Clone, Copy, Debug)]
+pub struct SensorErrors<'a> {
+    pub(super) numbers: &'a [f64],
+    pub(super) active: u64,
+}
+
+impl<'a> SensorErrors<'a> {
+    /// Effects with a number that is not 0 are present.
+    pub fn new(numbers: &'a [f64]) -> Self {
+        Self { numbers, active: active(&LOG, numbers) }
+    }
+
+    /// Whether any effect is present.
+    pub fn any(&self) -> bool {
+        self.active != 0
     }
 }
 
