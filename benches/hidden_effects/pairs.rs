@@ -82,6 +82,8 @@ pub struct Pair {
     /// Names with their status, and the members of the first; or how it failed.
     said: Result<Vec<(String, String)>, String>,
     members: Vec<String>,
+    /// Whether it said that a right name could not have shown in these flights.
+    could_not_show: bool,
     seconds: f64,
 }
 
@@ -114,11 +116,10 @@ pub fn case(number: usize, args: &Args) -> Pair {
     let start = Instant::now();
     let answer = ask(args, &folder.path, &logs, &nominal);
     let both = both.iter().map(|h| format!("{}={:.3}", h.id, h.size)).collect::<Vec<_>>().join(" ");
-    let (said, members) = match answer {
-        Ok((said, members)) => (Ok(said), members),
-        Err(error) => (Err(error), Vec::new()),
-    };
-    let pair = Pair { changed, both, said, members, seconds: start.elapsed().as_secs_f64() };
+    let Said { names, members, hidden } = answer.as_ref().cloned().unwrap_or_default();
+    let could_not_show = changed.as_ref().is_some_and(|c| c.right.iter().all(|name| hidden.contains(name)));
+    let (said, seconds) = (answer.map(|_| names), start.elapsed().as_secs_f64());
+    let pair = Pair { changed, both, said, members, could_not_show, seconds };
     if args.keep.is_some() {
         let truth = format!("{}\n{pair:#?}\n{airframe:#?}\n{settings:#?}\n", pair.line());
         std::fs::write(folder.path.join("truth.txt"), truth).expect("the truth to keep");
@@ -165,8 +166,13 @@ fn change(
     (id, size, right)
 }
 
-/// Names with their status, and the members of the first.
-type Said = (Vec<(String, String)>, Vec<String>);
+/// Names with their status, the members of the first, and what could not have shown.
+#[derive(Clone, Debug, Default)]
+struct Said {
+    names: Vec<(String, String)>,
+    members: Vec<String>,
+    hidden: Vec<String>,
+}
 
 fn ask(args: &Args, folder: &Path, logs: &[Log], base: &Vehicle) -> Result<Said, String> {
     for (name, log) in [EARLIER, LATER].into_iter().zip(logs) {
@@ -180,9 +186,12 @@ fn ask(args: &Args, folder: &Path, logs: &[Log], base: &Vehicle) -> Result<Said,
     let json: Value = serde_json::from_str(&text).map_err(|error| error.to_string())?;
     let list = json["changes"]["changes"].as_array().ok_or("no changes in the answer")?;
     let text = |v: &Value| v.as_str().unwrap_or_default().to_string();
-    let said = list.iter().map(|c| (text(&c["cause"]), text(&c["status"]))).collect();
+    let names = list.iter().map(|c| (text(&c["cause"]), text(&c["status"]))).collect();
     let members = list.first().and_then(|c| c["members"].as_array()).map(|m| m.iter().map(text).collect());
-    Ok((said, members.unwrap_or_default()))
+    let would_show = json["changes"]["would_show"].as_array().ok_or("no smallest changes in the answer")?;
+    let too_small = |w: &&Value| w["large"].as_f64().is_some_and(|large| w["smallest"].as_f64().unwrap_or(0.0) > large);
+    let hidden = would_show.iter().filter(too_small).map(|w| text(&w["cause"])).collect();
+    Ok(Said { names, members: members.unwrap_or_default(), hidden })
 }
 
 impl Pair {
@@ -221,6 +230,7 @@ impl Pair {
         let judgement = match (&self.changed, self.named().is_empty()) {
             (None, true) => "right",
             (None, false) => "FALSE CHANGE",
+            (Some(_), true) if self.could_not_show => "could not show",
             (Some(_), true) => "MISSED",
             _ if self.first_is_right() => "right",
             _ if self.first_set_holds() => "in the set",
@@ -242,6 +252,7 @@ pub fn print(all: &[Pair]) {
     share("unchanged: a false change", &same, &|p| !p.named().is_empty());
     share("changed: the change first", &changed, &Pair::first_is_right);
     share("changed: first, or in its set", &changed, &|p| p.first_is_right() || p.first_set_holds());
+    share("changed, of what could show: the change first", &|p| changed(p) && !p.could_not_show, &Pair::first_is_right);
     share("changed: told that something changed", &changed, &|p| !p.named().is_empty());
     share("changed: a wrong name first", &changed, &|p| {
         !p.named().is_empty() && !p.first_is_right() && !p.first_set_holds()
@@ -257,8 +268,19 @@ pub fn print(all: &[Pair]) {
 /// Where the file cannot be written.
 pub fn write(path: &Path, all: &[Pair]) {
     let mut out = csv::Writer::from_path(path).expect("the CSV");
-    out.write_record(["pair", "changed", "size", "mended", "both", "said", "first_right", "first_or_set", "seconds"])
-        .expect("a line");
+    out.write_record([
+        "pair",
+        "changed",
+        "size",
+        "mended",
+        "both",
+        "said",
+        "first_right",
+        "first_or_set",
+        "could_not_show",
+        "seconds",
+    ])
+    .expect("a line");
     for (number, p) in all.iter().enumerate() {
         let (id, size, mended) =
             p.changed.as_ref().map_or((String::new(), 0.0, false), |c| (c.id.clone(), c.size, c.mended));
@@ -273,6 +295,7 @@ pub fn write(path: &Path, all: &[Pair]) {
             p.said.as_ref().err().cloned().unwrap_or(said.join(" ")),
             flag(p.first_is_right()),
             flag(p.first_is_right() || p.first_set_holds()),
+            flag(p.could_not_show),
             format!("{:.1}", p.seconds),
         ];
         out.write_record(row).expect("a line");

@@ -27,6 +27,8 @@ criteria! {
     CHANGED_IMPACT = 0.02, Assumed("of eight pairs, changes that were found did 0.8 and more, a false one 0.017");
     /// Change of a sensor's constant error that matters, in small typical sizes.
     CHANGED_BIAS = 4.0, Assumed("it is another after every switching on");
-    /// Differences that are looked for at most.
+    /// Share of the best gain from which a number of the compact model is preferred to an effect that is tied with it.
+    PLAIN_SHARE = 0.9, Assumed("slower gains did 0.95 of what a response that slows with the voltage did");
+    /// Differences that are tried at most.
     MOST_CHANGES = 5.0, Assumed("more is another vehicle");
 }

@@ -18,7 +18,6 @@ use super::contrast::Contrast;
 use super::finding::{Diagnosis, Status};
 use super::fitted::FittedSelection;
 use super::problem::Problem;
-use super::select::Selection;
 use super::shown;
 use super::size::is_material;
 use crate::insight::Watch;
@@ -44,14 +43,9 @@ pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, wat
         accident::select_steady(all, contrasted, &mut |step, share| watch(step, 0.5 * share));
     let suspects = suspect::known(&problem);
     watch("comparing", 0.5);
-    let search = DifferenceSearch::new(&problem, &suspects, &selection.whitener, &selection.point).run();
+    let search = DifferenceSearch::new(&problem, &suspects, selection).run();
     let would_show = would_show(&problem, &search.tested, &suspects);
-    let (found, searched) = (reported(&search, &suspects), search.found.len());
-    let point = search.point.clone();
-    let whitener = selection.whitener.clone();
-    let selection = Selection { point, whitener, ..selection };
-    let fitted = FittedSelection::new(&problem, &selection);
-    Changes { would_show, left_out, ..changes(&fitted, &suspects, &found, searched) }
+    Changes { would_show, left_out, ..changes(&problem, &suspects, &search) }
 }
 
 impl Changes {
@@ -62,23 +56,23 @@ impl Changes {
     }
 }
 
-/// Differences that were found, and those that every fit allows for.
-fn reported(search: &DifferenceSearch, suspects: &[Suspect]) -> Vec<FoundDifference> {
+/// Differences that every fit allows for.
+fn allowed(search: &DifferenceSearch, suspects: &[Suspect]) -> Vec<FoundDifference> {
     let known = |suspect: usize| search.found.iter().any(|f| f.suspect == suspect);
-    let own = |s: &Suspect| !s.own.is_empty() && s.own.iter().all(|k| search.point.free.contains(k));
+    let own = |s: &Suspect| !s.own.is_empty() && s.own.iter().all(|k| search.selection.point.free.contains(k));
     let allowed = (0..suspects.len()).filter(|&s| !known(s) && own(&suspects[s]));
-    search.found.iter().cloned().chain(allowed.map(|suspect| FoundDifference { suspect, ties: Vec::new() })).collect()
+    allowed.map(|suspect| FoundDifference { suspect, ties: Vec::new() }).collect()
 }
 
-/// The answer, of what was `found`; after the first so many come those that every fit allows for.
-fn changes(fitted: &FittedSelection, suspects: &[Suspect], found: &[FoundDifference], searched: usize) -> Changes {
-    let places: Vec<Vec<usize>> = found.iter().map(|f| judge::places(fitted, &suspects[f.suspect])).collect();
-    let pays = judge::pays(fitted, &places);
-    let judged = found.iter().zip(pays).map(|(found, pays)| judge::judge(fitted, suspects, found, pays));
+/// The answer.
+fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch) -> Changes {
+    let fitted = &FittedSelection::new(problem, &search.selection);
+    let mut changes = judge::all(fitted, suspects, &search.found);
+    changes.extend(search.rejected.iter().map(|(_, change)| change.clone()));
     // What every fit allows for is worth a word where it is named.
-    let worth = |(i, c): &(usize, Change)| *i < searched || c.status != Status::Suspected;
-    let mut changes: Vec<Change> = judged.enumerate().filter(worth).map(|(_, c)| c).collect();
-    if let Some(motor) = motor::find(fitted.problem) {
+    let allowed = judge::all(fitted, suspects, &allowed(search, suspects));
+    changes.extend(allowed.into_iter().filter(|change| change.status != Status::Suspected));
+    if let Some(motor) = motor::find(problem) {
         changes.retain(|c| c.cause != motor.cause);
         changes.push(motor);
     }
@@ -98,7 +92,7 @@ fn changes(fitted: &FittedSelection, suspects: &[Suspect], found: &[FoundDiffere
         .map(|a| Both { effect: a.card.id, name: a.card.name, parameters: shown::parameters(fitted, a.card) })
         .collect();
     let changed = changes.iter().any(|c| c.status != Status::Suspected);
-    let [before, after] = [false, true].map(|set| names(fitted.problem, set));
+    let [before, after] = [false, true].map(|set| names(problem, set));
     Changes { changed, before, after, changes, both, would_show: Vec::new(), left_out: Vec::new() }
 }
 

@@ -36,7 +36,12 @@ pub struct Contrast {
 impl Contrast {
     /// Adds to the numbers of `model` the differences of everything that is no single flight's.
     pub fn new(model: &mut Model, later: Vec<bool>) -> Self {
-        let shares = TAU.chain(MAX_RATE).chain(DRAG).map(|k| k..k + 1).chain([THRUST]).map(Moves::Share);
+        // Roll and pitch by one share: a flight turns hard about each only a few times, and what changes the response
+        // of one, gains or motors, changes that of the other.
+        let axes = |first: usize| [first..first + 2, first + 2..first + 3];
+        let single = (TAU.start + 3..TAU.end).chain(DRAG).map(|k| k..k + 1);
+        let shares = axes(TAU.start).into_iter().chain(axes(MAX_RATE.start)).chain(single).chain([THRUST]);
+        let shares = shares.map(Moves::Share);
         let moves: Vec<Moves> = shares.chain((DRAG.end..FORMS).map(Moves::By)).collect();
         let first = model.numbers.len();
         for moved in &moves {

@@ -55,18 +55,20 @@ fn shifted(record: &FlightRecord, from: usize, offset: f64) -> Vec<[f64; 3]> {
     if offset == 0.0 {
         return (0..n).map(|i| std::array::from_fn(|k| record.fine.imu[from + k][i])).collect();
     }
-    let at = |t: f64, k: usize, near: usize| {
+    let (time, imu) = (&record.fine.time, &record.fine.imu[from..from + 3]);
+    let one = |near: usize| -> [f64; 3] {
+        let t = time[near] + offset;
         let mut i = near.min(n - 2);
-        while i > 0 && record.fine.time[i] > t {
+        while i > 0 && time[i] > t {
             i -= 1;
         }
-        while i + 2 < n && record.fine.time[i + 1] < t {
+        while i + 2 < n && time[i + 1] < t {
             i += 1;
         }
-        let share = ((t - record.fine.time[i]) / (record.fine.time[i + 1] - record.fine.time[i])).clamp(0.0, 1.0);
-        record.fine.imu[k][i] + share * (record.fine.imu[k][i + 1] - record.fine.imu[k][i])
+        let share = ((t - time[i]) / (time[i + 1] - time[i])).clamp(0.0, 1.0);
+        build!(|k| imu[k][i] + share * (imu[k][i + 1] - imu[k][i]))
     };
-    (0..n).map(|i| std::array::from_fn(|k| at(record.fine.time[i] + offset, from + k, i))).collect()
+    (0..n).map(one).collect()
 }
 
 /// Specific forces `force` of the IMU's samples, turned into the world and through a first-order lag of `tau` seconds;

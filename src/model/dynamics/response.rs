@@ -1,6 +1,6 @@
 //! Response of the inner loop to commands: first order (paper Eq. 6), with a limit to its slope, and second order.
 
-use crate::base::lane::Real;
+use crate::base::lane::{Mask, Real};
 
 /// 1 - exp(-dt / tau): the share of the gap between command and response that closes in `dt` seconds.
 pub fn alpha(tau: f64, dt: f64) -> f64 {
@@ -33,13 +33,19 @@ pub fn second_order<R: Real>(x: R, slope: R, to: R, tau: R, inertia: R, dt: R) -
     let square = sigma.mul_add(sigma, -stiffness);
     // Equal roots are the limit of nearly equal ones.
     let root = square.abs().max(stiffness * R::of(1e-6)).sqrt();
-    // Real roots, the slower one written without a difference of equals.
-    let (slow, fast) = ((-(stiffness / (sigma + root) * dt)).exp(), (-((sigma + root) * dt)).exp());
-    let (sin, cos) = (root * dt * R::of(0.5 / std::f64::consts::PI)).sin_cos_turns();
-    let decay = (-(sigma * dt)).exp();
     let oscillates = square.lt(R::zero());
-    let even = R::select(oscillates, decay * cos, (slow + fast) * R::of(0.5));
-    let odd = R::select(oscillates, decay * sin, (slow - fast) * R::of(0.5)) / root;
+    let (mut even, mut odd) = (R::zero(), R::zero());
+    if (!oscillates).any() {
+        // Real roots, the slower one written without a difference of equals.
+        let (slow, fast) = ((-(stiffness / (sigma + root) * dt)).exp(), (-((sigma + root) * dt)).exp());
+        (even, odd) = ((slow + fast) * R::of(0.5), (slow - fast) * R::of(0.5));
+    }
+    if oscillates.any() {
+        let (sin, cos) = (root * dt * R::of(0.5 / std::f64::consts::PI)).sin_cos_turns();
+        let decay = (-(sigma * dt)).exp();
+        (even, odd) = (R::select(oscillates, decay * cos, even), R::select(oscillates, decay * sin, odd));
+    }
+    odd = odd / root;
     let gap = x - to;
     let value = gap.mul_add(sigma.mul_add(odd, even), slope * odd);
     let change = slope.mul_add(even - sigma * odd, -(gap * stiffness * odd));

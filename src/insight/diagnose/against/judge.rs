@@ -26,8 +26,16 @@ use crate::model::effects::{EffectKind, Role};
 /// Parts of the time of each flight that are left out in turn, and that a difference has to last over.
 const PARTS: usize = 3;
 
-/// Judges a difference, of so many suspects.
-pub fn judge(fitted: &FittedSelection, suspects: &[Suspect], found: &FoundDifference, pays: f64) -> Change {
+/// Judges the differences that were `found`, each beside the others.
+pub fn all(fitted: &FittedSelection, suspects: &[Suspect], found: &[FoundDifference]) -> Vec<Change> {
+    let places: Vec<Vec<usize>> = found.iter().map(|f| places(fitted, &suspects[f.suspect])).collect();
+    let pays = unseen::pays(fitted, &thirds(fitted.problem), &places);
+    found.iter().zip(pays).map(|(found, pays)| judge(fitted, suspects, found, pays)).collect()
+}
+
+/// Judges a difference, of so many suspects; `pays` is by how sure it lowers the squares of unseen thirds of all
+/// flights.
+fn judge(fitted: &FittedSelection, suspects: &[Suspect], found: &FoundDifference, pays: f64) -> Change {
     let suspect = &suspects[found.suspect];
     let own = places(fitted, suspect);
     let sizes = sizes::of(fitted, suspect);
@@ -68,14 +76,9 @@ pub fn judge(fitted: &FittedSelection, suspects: &[Suspect], found: &FoundDiffer
 }
 
 /// Places of the differences of a suspect among the fitted numbers.
-pub fn places(fitted: &FittedSelection, suspect: &Suspect) -> Vec<usize> {
+fn places(fitted: &FittedSelection, suspect: &Suspect) -> Vec<usize> {
     let place = |k: &usize| fitted.point().free.iter().position(|f| f == k);
     suspect.own.iter().filter_map(place).collect()
-}
-
-/// By how sure each of the differences at `places` lowers the squares of unseen thirds of all flights.
-pub fn pays(fitted: &FittedSelection, places: &[Vec<usize>]) -> Vec<f64> {
-    unseen::pays(fitted, &thirds(fitted.problem), places)
 }
 
 /// Stretches of each third of every flight.

@@ -1,17 +1,22 @@
-//! Which differences explain what two sets of flights do not show alike: rank by score, fit the best, keep the best of
-//! them, and again.
+//! Which differences explain what two sets of flights do not show alike: rank by score, fit the best, judge it beside
+//! those that stand, keep it where all of them then hold, and again. What does not hold is no part of later fits: it
+//! would only take the certainty from what does.
 
+use super::change::Change;
 use super::columns::{Tested, tests};
+use super::judge;
 use super::suspect::Suspect;
-use crate::insight::criteria::changed::MOST_CHANGES;
+use crate::insight::criteria::changed::{MOST_CHANGES, PLAIN_SHARE};
 use crate::insight::criteria::evident::{BOUNDED_MERIT, GAIN_WORTH_A_FIT, LEAST_GAIN, SHORT_LIST};
 use crate::insight::criteria::rival::{RIVAL_KEEPS, TIE_DEVIATIONS};
 use crate::insight::diagnose::candidates::{Candidate, candidates};
+use crate::insight::diagnose::finding::Status;
 use crate::insight::diagnose::fit::{self, FitPoint};
+use crate::insight::diagnose::fitted::FittedSelection;
 use crate::insight::diagnose::numbers::span;
 use crate::insight::diagnose::problem::Problem;
+use crate::insight::diagnose::select::Selection;
 use crate::insight::diagnose::size::is_bounded;
-use crate::insight::diagnose::whiten::Whitener;
 use crate::model::effects::{Card, are_rivals};
 use rayon::prelude::*;
 
@@ -35,10 +40,12 @@ struct Tried {
 /// A search for differences.
 pub struct DifferenceSearch<'a> {
     problem: &'a Problem,
-    pub suspects: &'a [Suspect],
-    pub whitener: &'a Whitener,
-    pub point: FitPoint,
+    suspects: &'a [Suspect],
+    /// What both sets have in common, and the differences that hold.
+    pub selection: Selection,
     pub found: Vec<FoundDifference>,
+    /// What was fitted and did not hold, beside those that did.
+    pub rejected: Vec<(usize, Change)>,
     /// What was tested last.
     pub tested: Vec<Tested>,
     /// What nearly took the place of the last one found, with its gain.
@@ -47,21 +54,23 @@ pub struct DifferenceSearch<'a> {
 }
 
 impl<'a> DifferenceSearch<'a> {
-    /// From `point`, which both sets have in common.
-    pub fn new(problem: &'a Problem, suspects: &'a [Suspect], whitener: &'a Whitener, point: &FitPoint) -> Self {
-        let point = fit::fit(problem, whitener, &point.x, &point.free);
+    /// From `selection`, which both sets have in common.
+    pub fn new(problem: &'a Problem, suspects: &'a [Suspect], mut selection: Selection) -> Self {
+        let Selection { point, whitener, .. } = &mut selection;
+        *point = fit::fit(problem, whitener, &point.x, &point.free);
         let cards: Vec<&'static Card> = suspects.iter().filter_map(|s| s.card).collect();
         let held = |card: &Card| span(card).any(|k| point.free.contains(&k));
         let cards: Vec<_> = cards.into_iter().filter(|card| !held(card)).collect();
-        let candidates = candidates(problem, whitener, &point, &cards);
-        let (found, tested, pending) = (Vec::new(), Vec::new(), Vec::new());
-        Self { problem, suspects, whitener, point, found, tested, pending, candidates }
+        let candidates = candidates(problem, whitener, point, &cards);
+        let (found, rejected, tested, pending) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { problem, suspects, selection, found, rejected, tested, pending, candidates }
     }
 
     /// Adds differences until none is worth it.
     pub fn run(mut self) -> Self {
         for round in 0..=MOST_CHANGES.count() {
-            let mut order = tests(self.problem, self.whitener, &self.point, self.suspects, &self.candidates);
+            let Selection { point, whitener, .. } = &self.selection;
+            let mut order = tests(self.problem, whitener, point, self.suspects, &self.candidates);
             order.sort_by(|a, b| b.score.gain.total_cmp(&a.score.gain));
             self.keep_ties(&order);
             let ends = round == MOST_CHANGES.count() || !self.add(&order);
@@ -79,31 +88,47 @@ impl<'a> DifferenceSearch<'a> {
         let still =
             |suspect: usize| order.iter().filter(|t| t.suspect == suspect).map(|t| t.score.gain).fold(0.0, f64::max);
         let ties = self.pending.drain(..).filter(|(suspect, gain)| still(*suspect) < RIVAL_KEEPS.get() * gain);
-        last.ties = ties.map(|(suspect, _)| suspect).collect();
+        last.ties.extend(ties.map(|(suspect, _)| suspect));
     }
 
+    /// Tries the best that was not tried yet. No more is worth it where there is none.
     fn add(&mut self, order: &[Tested]) -> bool {
         let chosen = self.chosen(order);
         let mut tried: Vec<Tried> = chosen.par_iter().filter_map(|&suspect| self.best(suspect, order)).collect();
         let merit = |t: &Tried| t.gain * if self.bounded(t) { BOUNDED_MERIT.get() } else { 1.0 };
         tried.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
-        let Some(best) = tried.first() else { return false };
-        let own = self.suspects[best.suspect].own.len() as f64;
-        if merit(best) < LEAST_GAIN.get() + own {
-            return false;
-        }
-        let near = tried.iter().skip(1).filter(|t| tied(best, t));
-        self.pending = near.map(|t| (t.suspect, t.gain)).collect();
-        self.found.push(FoundDifference { suspect: best.suspect, ties: Vec::new() });
-        let point = fit::fit(self.problem, self.whitener, &best.point.x, &best.point.free);
-        self.point = point;
+        let worth = |t: &&Tried| merit(t) >= LEAST_GAIN.get() + self.suspects[t.suspect].own.len() as f64;
+        let Some(first) = tried.first().filter(worth) else { return false };
+        // A number of the compact model that does nearly as well is the plainer answer.
+        let plain = |t: &&Tried| self.suspects[t.suspect].card.is_none() && merit(t) > PLAIN_SHARE.get() * merit(first);
+        let best = tried.iter().find(|t| tied(first, t) && plain(t)).unwrap_or(first);
+        let near = tried.iter().filter(|t| t.suspect != best.suspect && tied(best, t));
+        let pending = near.map(|t| (t.suspect, t.gain)).collect();
+        let (suspect, x, free) = (best.suspect, best.point.x.clone(), best.point.free.clone());
+        self.hold(suspect, fit::fit(self.problem, &self.selection.whitener, &x, &free), pending);
         true
+    }
+
+    /// Keeps the difference of a suspect, fitted at `point`, where it and all that were found before hold there.
+    fn hold(&mut self, suspect: usize, point: FitPoint, pending: Vec<(usize, f64)>) {
+        let before = std::mem::replace(&mut self.selection.point, point);
+        self.found.push(FoundDifference { suspect, ties: Vec::new() });
+        let fitted = FittedSelection::new(self.problem, &self.selection);
+        let mut judged = judge::all(&fitted, self.suspects, &self.found);
+        if judged.iter().all(|change| change.status != Status::Suspected) {
+            self.pending = pending;
+            return;
+        }
+        self.selection.point = before;
+        self.found.pop();
+        self.rejected.extend(judged.pop().map(|change| (suspect, change)));
     }
 
     /// Suspects that are worth a fit, the best first, and the rivals of the very first.
     fn chosen(&self, order: &[Tested]) -> Vec<usize> {
         let mut chosen: Vec<usize> = Vec::new();
-        for tested in order.iter().filter(|t| t.score.gain > GAIN_WORTH_A_FIT.get()) {
+        let rejected = |suspect: usize| self.rejected.iter().any(|(r, _)| *r == suspect);
+        for tested in order.iter().filter(|t| t.score.gain > GAIN_WORTH_A_FIT.get() && !rejected(t.suspect)) {
             let card = |suspect: usize| self.suspects[suspect].card;
             let leader = chosen.first().and_then(|&first| card(first));
             let rival = leader.zip(card(tested.suspect)).is_some_and(|(a, b)| are_rivals(a, b));
@@ -128,12 +153,13 @@ impl<'a> DifferenceSearch<'a> {
 
     /// A suspect fitted as `tested` expects it, and what its difference gains.
     fn fitted(&self, tested: &Tested) -> Tried {
-        let (problem, point) = (self.problem, &self.point);
+        let problem = self.problem;
+        let Selection { point, whitener, .. } = &self.selection;
         let suspect = &self.suspects[tested.suspect];
         let unknown = |k: &usize| !point.free.contains(k);
         let common: Vec<usize> = suspect.common().filter(unknown).collect();
         let own: Vec<usize> = common.iter().chain(&suspect.own).copied().collect();
-        let with = fit::refit(problem, self.whitener, point, &own, &self.start(suspect, tested));
+        let with = fit::refit(problem, whitener, point, &own, &self.start(suspect, tested));
         let alike = if common.is_empty() {
             point.total()
         } else {
@@ -144,14 +170,14 @@ impl<'a> DifferenceSearch<'a> {
                 x[k] += 0.5 * std::mem::take(&mut x[d]);
                 x[k] = x[k].clamp(problem.model.numbers[k].low, problem.model.numbers[k].high);
             }
-            fit::refit(problem, self.whitener, point, &common, &x).total().min(point.total())
+            fit::refit(problem, whitener, point, &common, &x).total().min(point.total())
         };
         Tried { suspect: tested.suspect, gain: alike - with.total(), point: with }
     }
 
     /// Where the fit of a suspect begins: an effect of later flights, or of the earlier ones.
     fn start(&self, suspect: &Suspect, tested: &Tested) -> Vec<f64> {
-        let mut x = self.point.x.clone();
+        let mut x = self.selection.point.x.clone();
         let Some(direction) = &tested.direction else { return x };
         let size = tested.expected.abs().clamp(0.2, 3.0);
         for (k, start) in &direction.start {

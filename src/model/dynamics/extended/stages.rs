@@ -55,16 +55,15 @@ pub fn actuator_response<R: Real>(
     let falling = setpoint.command[3].lt(command[3]);
     let tau =
         [actuator.tau[0], actuator.tau[1], actuator.tau[2], R::select(falling, actuator.tau_down, actuator.tau[3])];
-    let mut next: [R; 4] =
-        build!(|i| response::toward(command[i], setpoint.command[i], R::one() - (-(h / tau[i])).exp()));
-    let mut next_slope = slope;
     let (oscillates, limited) = values.shapes();
-    if limited {
-        for i in 0..3 {
-            next[i] =
-                response::limited(command[i], setpoint.command[i], tau[i], actuator.slew[i] * p.compact.max_rate[i], h);
+    let mut next: [R; 4] = build!(|i| {
+        if i < 3 && limited {
+            response::limited(command[i], setpoint.command[i], tau[i], actuator.slew[i] * p.compact.max_rate[i], h)
+        } else {
+            response::toward(command[i], setpoint.command[i], R::one() - (-(h / tau[i])).exp())
         }
-    }
+    });
+    let mut next_slope = slope;
     if oscillates {
         for i in 0..3 {
             // An axis, or a lane, without inertia keeps what the others override.
