@@ -12,11 +12,15 @@ use crate::flight::live::{Live, Mission};
 use crate::flight::open::open_bytes;
 use crate::flight::pilot::{Pilot, PilotLimits};
 use crate::flight::rehearse::airframe::Airframe;
-use crate::flight::rehearse::betaflight::settings;
+use crate::flight::rehearse::ardupilot::process::ARDUPILOT;
+use crate::flight::rehearse::ardupilot::wire::ArduPilotWire;
+use crate::flight::rehearse::betaflight::process::BETAFLIGHT;
+use crate::flight::rehearse::betaflight::wire::{BetaflightWire, Ports};
 use crate::flight::rehearse::clock::SharedClock;
-use crate::flight::rehearse::firmware::{self, Firmware};
+use crate::flight::rehearse::firmware::Firmware;
 use crate::flight::rehearse::plant::Plant;
-use crate::flight::rehearse::{FirmwareWire, Ports, Rehearsal, STEP_S, flown};
+use crate::flight::rehearse::wire::Wire;
+use crate::flight::rehearse::{Rehearsal, STEP_S, ardupilot, betaflight, flown};
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Options, write};
 use crate::model::vehicle::Vehicle;
@@ -37,7 +41,8 @@ pub struct Args {
     /// The firmware's own simulator build
     #[arg(long, value_name = "PATH", requires = "rehearse")]
     firmware: Option<PathBuf>,
-    /// Your own command lines for the firmware, such as its `diff all`; racer sets rates, arming and log over them
+    /// Your own settings of the firmware: command lines, such as Betaflight's `diff all`, or ArduPilot's parameter file;
+    /// racer sets rates, arming and log over them
     #[arg(long, value_name = "FILE", requires = "rehearse")]
     settings: Option<PathBuf>,
     /// The vehicle that is flown: a name or a file [default: the policy's own; seed_class for the pilot]
@@ -61,10 +66,11 @@ pub struct Args {
     /// Where the random numbers of sensors and manoeuvres start
     #[arg(long, default_value_t = 1, requires = "rehearse")]
     seed: u64,
-    /// Whose time it goes by: `lockstep` gives the firmware racer's (Linux, needs `cc`), `wall` is real time
+    /// Whose time it goes by: `lockstep` gives the firmware racer's (Betaflight: on Linux, with `cc`), `wall` is real
+    /// time (Betaflight alone)
     #[arg(long, value_name = "CLOCK", default_value = "lockstep", requires = "rehearse")]
     clock: ClockKind,
-    /// New file for the firmware's own blackbox log
+    /// New file for the firmware's own log: Betaflight's blackbox, ArduPilot's .BIN
     #[arg(long, value_name = "FILE", requires = "rehearse")]
     blackbox: Option<PathBuf>,
 }
@@ -73,10 +79,12 @@ pub struct Args {
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Kind {
     Betaflight,
+    #[value(name = "ardupilot")]
+    ArduPilot,
 }
 
 /// See [`SharedClock`].
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum ClockKind {
     Lockstep,
     Wall,
@@ -119,7 +127,7 @@ pub fn run(args: &Args, asked: Asked) -> anyhow::Result<CommandEnd> {
     for (file, bytes) in [(log, Some(write::mcap(&rehearsal.log)?)), (blackbox, firmware.blackbox())] {
         match (file, bytes) {
             (Some(file), Some(bytes)) => tell(&format!("written to {}", file.write(&bytes)?.display())),
-            (Some(_), None) => tell("the firmware wrote no blackbox log"),
+            (Some(_), None) => tell("the firmware wrote no log of its own"),
             (None, _) => {}
         }
     }
@@ -137,19 +145,17 @@ struct Flight<'a> {
 impl<'a> Flight<'a> {
     /// The firmware, and the vehicle on its pad.
     fn begin(&self, position: [f64; 3], heading: f64) -> anyhow::Result<(Rehearsal<'a>, Firmware)> {
-        let Args { firmware: given, settings: own, clock, seed, .. } = self.args;
-        let clock = match clock {
-            ClockKind::Lockstep => SharedClock::lockstep()?,
-            ClockKind::Wall => SharedClock::wall(),
-        };
+        let Args { settings, seed, .. } = self.args;
         let airframe = self.airframe()?;
-        let own = own.as_ref().map_or(Ok(String::new()), |path| {
+        let own = settings.as_ref().map(|path| {
             std::fs::read_to_string(path)
-                .map_err(|error| BadInput::new(path.display(), error, "command lines of the firmware", ""))
-        })?;
-        let path = firmware::find(given.as_deref().unwrap_or(Path::new("")))?;
-        let wire = FirmwareWire::new(Ports::BETAFLIGHT, clock)?;
-        let firmware = Firmware::start(&path, &own, &settings(self.full_rate), &wire.clock)?;
+                .map_err(|error| BadInput::new(path.display(), error, "settings of the firmware", ""))
+        });
+        let own = own.transpose()?;
+        let (wire, firmware) = match self.args.rehearse.unwrap_or(Kind::Betaflight) {
+            Kind::Betaflight => self.betaflight(own.as_deref())?,
+            Kind::ArduPilot => self.ardupilot(own.as_deref(), &airframe)?,
+        };
         for line in &firmware.refused {
             tell(&format!("the firmware refuses a setting: {line}"));
         }
@@ -157,6 +163,36 @@ impl<'a> Flight<'a> {
         let plant = Plant::new(self.vehicle, airframe, STEP_S, position, attitude);
         let instruments = Instruments::new(self.sensors, *seed);
         Ok((Rehearsal::new(plant, wire, instruments, self.vehicle.mass_kg, self.full_rate), firmware))
+    }
+
+    fn betaflight(&self, own: Option<&str>) -> anyhow::Result<(Box<dyn Wire>, Firmware)> {
+        let clock = match self.args.clock {
+            ClockKind::Lockstep => SharedClock::lockstep()?,
+            ClockKind::Wall => SharedClock::wall(),
+        };
+        let path = BETAFLIGHT.find(self.program())?;
+        let wire = BetaflightWire::new(Ports::BETAFLIGHT, clock)?;
+        let settings = betaflight::settings(self.full_rate);
+        let firmware = betaflight::process::start(&path, own.unwrap_or_default(), &settings, &wire.clock)?;
+        Ok((Box::new(wire), firmware))
+    }
+
+    fn ardupilot(&self, own: Option<&str>, airframe: &Airframe) -> anyhow::Result<(Box<dyn Wire>, Firmware)> {
+        if self.args.clock == ClockKind::Wall {
+            let found = "ArduPilot, whose simulator build goes by racer's time";
+            return Err(BadInput::new("--clock wall", found, "--clock lockstep", "leave the option out").into());
+        }
+        let path = ARDUPILOT.find(self.program())?;
+        let mut wire = ArduPilotWire::new()?;
+        let gains = ardupilot::gains::of(self.vehicle, airframe);
+        let full = ardupilot::full_rates(self.full_rate);
+        let parameters = ardupilot::parameters::file(full, own, gains, self.args.blackbox.is_some());
+        let firmware = ardupilot::process::start(&path, &parameters, &mut wire)?;
+        Ok((Box::new(wire), firmware))
+    }
+
+    fn program(&self) -> &Path {
+        self.args.firmware.as_deref().unwrap_or(Path::new(""))
     }
 
     /// Derived from the vehicle, but for what was given.
