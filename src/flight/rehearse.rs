@@ -79,6 +79,9 @@ impl<'a> Rehearsal<'a> {
         let [resting, armed] = self.wire.patience();
         for _ in 0..resting {
             self.hold(&Sticks::default())?;
+            if self.wire.ready() {
+                break;
+            }
         }
         for _ in 0..armed {
             self.hold(&Sticks { armed: true, ..Sticks::default() })?;

@@ -24,6 +24,11 @@ pub trait Wire: Debug {
     /// [`Airframe`](super::airframe::Airframe); none where it said nothing new. Fails where it is silent or gone.
     fn step(&mut self, now: &Actual, imu: &[f64; 6]) -> Result<Option<[f64; 4]>>;
 
+    /// Whether it said that it can be armed, for one that says so.
+    fn ready(&self) -> bool {
+        false
+    }
+
     /// Steps that began late, and all, by the wall; none in lockstep.
     fn late(&self) -> Option<[u64; 2]> {
         None

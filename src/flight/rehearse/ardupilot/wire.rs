@@ -36,7 +36,14 @@ pub struct ArduPilotWire {
     sequence: u8,
     heard: Frames,
     said: Option<String>,
+    /// The step at which it said that it has booted.
+    booted: Option<u64>,
 }
+
+/// What it says then.
+const BOOTED: &str = "ArduPilot Ready";
+/// Steps from there until it can be armed.
+const SETTLE: u64 = 3000;
 
 impl ArduPilotWire {
     /// Takes two ports. Fails where there are none.
@@ -51,8 +58,18 @@ impl ArduPilotWire {
         let (physics, link) = (bind()?, bind()?);
         link.set_nonblocking(true).map_err(failed)?;
         let longest = Duration::from_secs_f64(longest_s);
-        let (heard, said) = (Frames::default(), None);
-        Ok(Self { physics, link, link_at: None, longest, frame: None, steps: 0, sequence: 0, heard, said })
+        Ok(Self {
+            physics,
+            link,
+            link_at: None,
+            longest,
+            frame: None,
+            steps: 0,
+            sequence: 0,
+            heard: Frames::default(),
+            said: None,
+            booted: None,
+        })
     }
 
     /// Where it listens for servo outputs, and for MAVLink.
@@ -115,8 +132,11 @@ impl ArduPilotWire {
                 let Scanned::Known(frame) = found else { continue };
                 if frame.id == STATUSTEXT {
                     let text: Vec<u8> = (1..51).map(|at| Payload(&frame.payload).u8(at)).collect();
-                    let text = String::from_utf8_lossy(&text);
-                    self.said = Some(text.trim_end_matches('\0').to_string());
+                    let text = String::from_utf8_lossy(&text).trim_end_matches('\0').to_string();
+                    if text == BOOTED {
+                        self.booted = Some(self.steps);
+                    }
+                    self.said = Some(text);
                 }
             }
         }
@@ -129,8 +149,12 @@ impl Wire for ArduPilotWire {
     }
 
     fn patience(&self) -> [usize; 2] {
-        // It boots and calibrates its gyro within five seconds, and lets motors turn two after it was armed.
-        [800, 300]
+        // It looks for its gyro's offset for up to 30 s, and lets motors turn two after it was armed.
+        [4500, 300]
+    }
+
+    fn ready(&self) -> bool {
+        self.booted.is_some_and(|at| self.steps > at + SETTLE)
     }
 
     fn begin(&mut self) -> Result<()> {
