@@ -1,13 +1,15 @@
 //! Flights on the ground: the plant against the simulator, and a whole rehearsal with a small firmware of our own.
 
+mod ardupilot;
+
 use racer::base::lane::Level;
 use racer::flight::instruments::Instruments;
 use racer::flight::live::heard::{Heard, Sight};
 use racer::flight::live::phase::{Phase, Reason};
 use racer::flight::live::{Live, Mission};
 use racer::flight::rehearse::airframe::Airframe;
-use racer::flight::rehearse::betaflight::{STATE_BYTES, STICKS_BYTES, full_rates};
 use racer::flight::rehearse::betaflight::wire::{BetaflightWire, Ports};
+use racer::flight::rehearse::betaflight::{STATE_BYTES, STICKS_BYTES, full_rates};
 use racer::flight::rehearse::clock::SharedClock;
 use racer::flight::rehearse::plant::Plant;
 use racer::flight::rehearse::{Rehearsal, STEP_S, flown};

@@ -18,7 +18,7 @@ const PARAMETERS: &str = "racer.parm";
 /// How it begins to complain of a parameter that it does not have.
 const REFUSED: &str = "Ignored unknown param ";
 /// Longest time from its start to its first word, s, and how often it is looked whether it still runs.
-const SPEAK_S: u64 = 10;
+const SPEAK_S: u64 = 5;
 const LOOK_S: f64 = 0.1;
 
 /// Starts the program at the absolute `path` with the `parameters` of a file, and waits until it speaks. Fails where it
