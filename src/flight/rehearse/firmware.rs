@@ -36,7 +36,7 @@ pub struct Firmware {
     child: Child,
     folder: TempDir,
     maker: Maker,
-    /// Lines of the user's own settings that it did not take.
+    /// Lines of the user's own settings that it said it did not take.
     pub refused: Vec<String>,
 }
 
@@ -63,15 +63,10 @@ impl Firmware {
         self.child.try_wait().ok().flatten()
     }
 
-    /// All that it printed.
-    pub fn output(&self) -> String {
-        let output = fs::read(self.folder.path().join(OUTPUT)).unwrap_or_default();
-        String::from_utf8_lossy(&output).into_owned()
-    }
-
     /// The last that it printed of why it does not arm, or else of anything.
     pub fn last_words(&self) -> String {
-        let output = self.output();
+        let output = fs::read(self.folder.path().join(OUTPUT)).unwrap_or_default();
+        let output = String::from_utf8_lossy(&output);
         let why = output.lines().rev().find(|line| line.contains("Arming disabled"));
         let last = why.or(output.lines().rev().find(|line| !line.trim().is_empty()));
         format!("the firmware printed last: {}", last.unwrap_or("nothing"))

@@ -15,8 +15,6 @@ pub const ARDUPILOT: Maker = Maker {
 };
 
 const PARAMETERS: &str = "racer.parm";
-/// How it begins to complain of a parameter that it does not have.
-const REFUSED: &str = "Ignored unknown param ";
 /// Longest time from its start to its first word, s, and how often it is looked whether it still runs.
 const SPEAK_S: u64 = 5;
 const LOOK_S: f64 = 0.1;
@@ -38,9 +36,6 @@ pub fn start(path: &Path, parameters: &str, wire: &mut ArduPilotWire) -> Result<
     let looks = (SPEAK_S as f64 / LOOK_S) as usize;
     for _ in 0..looks {
         if wire.spoke_within(Duration::from_secs_f64(LOOK_S))? {
-            let output = firmware.output();
-            let refused = output.lines().filter(|line| line.starts_with(REFUSED)).map(str::to_string);
-            firmware.refused = refused.collect();
             return Ok(firmware);
         }
         if let Some(status) = firmware.ended() {
