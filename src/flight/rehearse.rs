@@ -21,7 +21,7 @@ use crate::flight::{Log, VehicleKind, VehicleRecord, motors};
 use crate::model::constants::CONTROL_S;
 use plant::Plant;
 use sticks::Sticks;
-use wire::Wire;
+use wire::FirmwareWire;
 
 /// Step of plant, gyro and firmware, s.
 pub const STEP_S: f64 = 0.001;
@@ -31,7 +31,7 @@ pub const STEP_S: f64 = 0.001;
 pub struct Rehearsal<'a> {
     pub plant: Plant,
     pub log: Log,
-    wire: Box<dyn Wire>,
+    wire: Box<dyn FirmwareWire>,
     instruments: Instruments<'a>,
     /// What each motor is sent, 0..1.
     motors: [f64; 4],
@@ -43,7 +43,7 @@ impl<'a> Rehearsal<'a> {
     /// At rest; the log is of a vehicle of that mass (kg) whose full command asks for those rates (rad/s).
     pub fn new(
         plant: Plant,
-        wire: Box<dyn Wire>,
+        wire: Box<dyn FirmwareWire>,
         instruments: Instruments<'a>,
         mass_kg: f64,
         full_rate: [f64; 3],

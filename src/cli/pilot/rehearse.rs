@@ -19,7 +19,7 @@ use crate::flight::rehearse::betaflight::wire::{BetaflightWire, Ports};
 use crate::flight::rehearse::clock::SharedClock;
 use crate::flight::rehearse::firmware::Firmware;
 use crate::flight::rehearse::plant::Plant;
-use crate::flight::rehearse::wire::Wire;
+use crate::flight::rehearse::wire::FirmwareWire;
 use crate::flight::rehearse::{Rehearsal, STEP_S, ardupilot, betaflight, flown};
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Options, write};
@@ -41,8 +41,8 @@ pub struct Args {
     /// The firmware's own simulator build
     #[arg(long, value_name = "PATH", requires = "rehearse")]
     firmware: Option<PathBuf>,
-    /// Your own settings of the firmware: command lines, such as Betaflight's `diff all`, or ArduPilot's parameter file;
-    /// racer sets rates, arming and log over them
+    /// Your own settings of the firmware: command lines, such as Betaflight's `diff all`, or a parameter file of
+    /// ArduPilot; racer sets rates, arming and log over them
     #[arg(long, value_name = "FILE", requires = "rehearse")]
     settings: Option<PathBuf>,
     /// The vehicle that is flown: a name or a file [default: the policy's own; seed_class for the pilot]
@@ -165,7 +165,7 @@ impl<'a> Flight<'a> {
         Ok((Rehearsal::new(plant, wire, instruments, self.vehicle.mass_kg, self.full_rate), firmware))
     }
 
-    fn betaflight(&self, own: Option<&str>) -> anyhow::Result<(Box<dyn Wire>, Firmware)> {
+    fn betaflight(&self, own: Option<&str>) -> anyhow::Result<(Box<dyn FirmwareWire>, Firmware)> {
         let clock = match self.args.clock {
             ClockKind::Lockstep => SharedClock::lockstep()?,
             ClockKind::Wall => SharedClock::wall(),
@@ -177,7 +177,7 @@ impl<'a> Flight<'a> {
         Ok((Box::new(wire), firmware))
     }
 
-    fn ardupilot(&self, own: Option<&str>, airframe: &Airframe) -> anyhow::Result<(Box<dyn Wire>, Firmware)> {
+    fn ardupilot(&self, own: Option<&str>, airframe: &Airframe) -> anyhow::Result<(Box<dyn FirmwareWire>, Firmware)> {
         if self.args.clock == ClockKind::Wall {
             let found = "ArduPilot, whose simulator build goes by racer's time";
             return Err(BadInput::new("--clock wall", found, "--clock lockstep", "leave the option out").into());

@@ -6,7 +6,7 @@
 //! 50 times a second; sticks go as MAVLink's RC_CHANNELS_OVERRIDE therefore ([`wire`]), a hundred times.
 //!
 //! They are those of a pilot in ACRO with its rate loop alone: its guided modes take body rates, too, but hold an
-//! attitude by them, and leave the rates out once that is missed by a right angle's third or more.
+//! attitude by them, and leave the rates out where that is missed by more than 60 degrees.
 
 pub mod gains;
 pub mod parameters;
@@ -52,8 +52,8 @@ pub fn state(time_s: f64, now: &Actual, imu: &[f64; 6]) -> String {
     let attitude = list([w + z, x + y, x - y, w - z].map(|part| part * half));
     let [p, q, r, ax, ay, az] = *imu;
     format!(
-        "\n{{\"timestamp\":{time_s:.9},\"imu\":{{\"gyro\":{},\"accel_body\":{}}},\"position\":{},\"quaternion\":{attitude},\
-         \"velocity\":{},\"battery\":{{\"voltage\":{:.4},\"current\":0}},\"no_time_sync\":1}}\n",
+        "\n{{\"timestamp\":{time_s:.9},\"imu\":{{\"gyro\":{},\"accel_body\":{}}},\"position\":{},\
+         \"quaternion\":{attitude},\"velocity\":{},\"battery\":{{\"voltage\":{:.4},\"current\":0}},\"no_time_sync\":1}}\n",
         body([p, q, r]),
         body([ax, ay, az]),
         world(now.position),

@@ -6,7 +6,7 @@ use crate::flight::instruments::Actual;
 use std::fmt::Debug;
 
 /// How a rehearsal speaks with one kind of firmware.
-pub trait Wire: Debug {
+pub trait FirmwareWire: Debug {
     /// Body rates of full sticks, rad/s, of a firmware that was set up for at least `wanted`.
     fn full_rates(&self, wanted: [f64; 3]) -> [f64; 3];
 

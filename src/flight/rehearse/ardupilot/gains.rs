@@ -15,10 +15,12 @@ pub struct RateGains {
     pub d: f64,
 }
 
-/// How fast each rate loop is to answer, 1/s: about a quarter of what the loop's delays would let it.
-const BANDWIDTH: [f64; 3] = [40.0, 40.0, 20.0];
-/// How fast a lasting error is to be integrated away, 1/s.
-const INTEGRAL: f64 = 2.0;
+/// How fast each rate loop is to answer, 1/s. Half as much again let `seed_class` answer no sooner.
+const BANDWIDTH: [f64; 3] = [60.0, 60.0, 40.0];
+/// How fast a lasting error is to be integrated away, 1/s. Four times as much made it overshoot by a tenth.
+const INTEGRAL: f64 = 0.5;
+/// How much of the motors' lag the derivative takes up. With all of it the vehicle answered later.
+const LEAD: f64 = 0.7;
 /// How much the difference of an axis' motors is of its loop's answer, from the mean.
 const SHARE: f64 = 0.5;
 
@@ -35,13 +37,13 @@ pub fn authority(vehicle: &Vehicle, frame: &Airframe) -> [f64; 3] {
     std::array::from_fn(|axis| frame.turning(sides[axis].map(|side| side * SHARE * slope), [0.0; 3])[axis])
 }
 
-/// Gains for roll, pitch, and yaw. The derivative takes up the motors' lag.
+/// Gains for roll, pitch, and yaw.
 pub fn of(vehicle: &Vehicle, frame: &Airframe) -> [RateGains; 3] {
     let authority = authority(vehicle, frame);
     let lag_s = vehicle.time_constants()[3];
     std::array::from_fn(|axis| {
         let p = BANDWIDTH[axis] / authority[axis].max(1e-3);
-        RateGains { p, i: p * INTEGRAL, d: p * lag_s }
+        RateGains { p, i: p * INTEGRAL, d: p * LEAD * lag_s }
     })
 }
 

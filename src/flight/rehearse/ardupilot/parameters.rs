@@ -54,7 +54,7 @@ LOG_FILE_DSRMROT 1
 /// steps of the setpoint, and motors that follow the throttle straight from a slow idle.
 const BEGIN: &str = "\
 SCHED_LOOP_RATE 1000
-INS_GYRO_FILTER 120
+INS_GYRO_FILTER 200
 ACRO_OPTIONS 3
 ATC_ACCEL_R_MAX 0
 ATC_ACCEL_P_MAX 0
@@ -71,16 +71,16 @@ MOT_SPOOL_TIME 0.1
 
 /// A line of a parameter file.
 #[derive(Debug, PartialEq)]
-struct Parameter<'a> {
+struct ParameterLine<'a> {
     name: &'a str,
     line: &'a str,
 }
 
-fn parameters(text: &str) -> impl Iterator<Item = Parameter<'_>> {
+fn parameters(text: &str) -> impl Iterator<Item = ParameterLine<'_>> {
     text.lines().filter_map(|line| {
         let name = line.split([',', ' ', '=', '\t']).find(|part| !part.is_empty())?.trim();
         let is_name = name.starts_with(|c: char| c.is_ascii_uppercase());
-        (is_name && !name.contains('#')).then_some(Parameter { name, line: line.trim_end() })
+        (is_name && !name.contains('#')).then_some(ParameterLine { name, line: line.trim_end() })
     })
 }
 
@@ -109,7 +109,7 @@ fn beginning(gains: [RateGains; 3]) -> String {
     let mut out = String::from(BEGIN);
     for (axis, RateGains { p, i, d }) in ["RLL", "PIT", "YAW"].into_iter().zip(gains) {
         let _ = write!(out, "ATC_RAT_{axis}_P {p:.6}\nATC_RAT_{axis}_I {i:.6}\nATC_RAT_{axis}_D {d:.6}\n");
-        let _ = write!(out, "ATC_RAT_{axis}_FLTT 0\nATC_RAT_{axis}_FLTE 0\nATC_RAT_{axis}_FLTD 60\n");
+        let _ = write!(out, "ATC_RAT_{axis}_FLTT 0\nATC_RAT_{axis}_FLTE 0\nATC_RAT_{axis}_FLTD 120\n");
     }
     out
 }

@@ -2,7 +2,7 @@
 
 use super::super::STEP_S;
 use super::super::sticks::Sticks;
-use super::super::wire::Wire;
+use super::super::wire::FirmwareWire;
 use super::SERVO_BYTES;
 use crate::base::error::{Error, Result};
 use crate::flight::instruments::Actual;
@@ -143,7 +143,7 @@ impl ArduPilotWire {
     }
 }
 
-impl Wire for ArduPilotWire {
+impl FirmwareWire for ArduPilotWire {
     fn full_rates(&self, wanted: [f64; 3]) -> [f64; 3] {
         super::full_rates(wanted)
     }

@@ -2,7 +2,7 @@
 
 use super::super::clock::SharedClock;
 use super::super::sticks::Sticks;
-use super::super::wire::Wire;
+use super::super::wire::FirmwareWire;
 use super::{MOTORS_BYTES, MOTORS_PORT, STATE_PORT, STICKS_PORT};
 use crate::base::error::{Error, Result};
 use crate::flight::instruments::Actual;
@@ -59,7 +59,7 @@ impl BetaflightWire {
     }
 }
 
-impl Wire for BetaflightWire {
+impl FirmwareWire for BetaflightWire {
     fn full_rates(&self, wanted: [f64; 3]) -> [f64; 3] {
         super::full_rates(wanted)
     }
