@@ -51,14 +51,12 @@ pub fn state(time_s: f64, now: &Actual, imu: &[f64; 6]) -> String {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let attitude = list([w + z, x + y, x - y, w - z].map(|part| part * half));
     let [p, q, r, ax, ay, az] = *imu;
+    let imu = format!("{{\"gyro\":{},\"accel_body\":{}}}", body([p, q, r]), body([ax, ay, az]));
+    let [position, velocity] = [now.position, now.velocity].map(world);
+    let battery = format!("{{\"voltage\":{:.4},\"current\":0}}", now.voltage);
     format!(
-        "\n{{\"timestamp\":{time_s:.9},\"imu\":{{\"gyro\":{},\"accel_body\":{}}},\"position\":{},\
-         \"quaternion\":{attitude},\"velocity\":{},\"battery\":{{\"voltage\":{:.4},\"current\":0}},\"no_time_sync\":1}}\n",
-        body([p, q, r]),
-        body([ax, ay, az]),
-        world(now.position),
-        world(now.velocity),
-        now.voltage,
+        "\n{{\"timestamp\":{time_s:.9},\"imu\":{imu},\"position\":{position},\"quaternion\":{attitude},\
+         \"velocity\":{velocity},\"battery\":{battery},\"no_time_sync\":1}}\n"
     )
 }
 
