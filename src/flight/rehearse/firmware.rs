@@ -68,7 +68,9 @@ impl Firmware {
         let output = fs::read(self.folder.path().join(OUTPUT)).unwrap_or_default();
         let output = String::from_utf8_lossy(&output);
         let why = output.lines().rev().find(|line| line.contains("Arming disabled"));
-        let last = why.or(output.lines().rev().find(|line| !line.trim().is_empty()));
+        // ArduPilot says of every port that is not used that it is not.
+        let mut lines = output.lines().rev();
+        let last = why.or(lines.find(|line| !line.trim().is_empty() && !line.starts_with("Skipping port")));
         format!("the firmware printed last: {}", last.unwrap_or("nothing"))
     }
 

@@ -14,6 +14,8 @@ use std::time::{Duration, Instant};
 
 /// Longest wait for an answer, s.
 const ANSWER_S: f64 = 10.0;
+/// How long it may take before it is looked whether it still runs, s.
+const PROBE_S: f64 = 0.5;
 /// Who may override a receiver: a ground station, by its system.
 const GROUND_STATION: [u8; 2] = [255, 190];
 /// Steps of a control period. The firmware looks at its serial ports when more than 10 ms have gone by; a microsecond
@@ -101,14 +103,18 @@ impl ArduPilotWire {
     fn outputs(&mut self) -> Result<[f64; 4]> {
         let mut bytes = [0; SERVO_BYTES];
         let end = Instant::now() + self.longest;
-        self.wait_for(self.longest)?;
+        self.wait_for(self.longest.min(Duration::from_secs_f64(PROBE_S)))?;
         while Instant::now() < end {
             let length = match self.physics.recv(&mut bytes) {
                 Ok(length) => length,
                 Err(error) if error.kind() == ErrorKind::ConnectionRefused => {
                     return Err(Error::Failed(format!("the firmware is gone: {error}")));
                 }
-                Err(_) => continue,
+                Err(_) => {
+                    // It takes no notice of nothing; where it is gone, the system answers.
+                    let _ = self.physics.send(&[]);
+                    continue;
+                }
             };
             match (super::motors(&bytes[..length]), self.frame) {
                 (Some((frame, _)), Some(last)) if frame == last => {}
