@@ -5,7 +5,8 @@ use super::gains::RateGains;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Over the user's: how it is flown and by what, and what a simulator has no sense of.
+/// Over the user's: how it is flown and by what, and what a simulator has no sense of. `SYSID_MYGCS` and `ARMING_CHECK`
+/// are older names; a name that a version does not have is nothing to it.
 const SET: &str = "\
 FRAME_CLASS 1
 FRAME_TYPE 1
@@ -27,11 +28,13 @@ ACRO_THR_MID 0.5
 PILOT_THR_FILT 0
 RC_OPTIONS 0
 MAV_GCS_SYSID 255
+SYSID_MYGCS 255
 RCMAP_ROLL 1
 RCMAP_PITCH 2
 RCMAP_THROTTLE 3
 RCMAP_YAW 4
 ARMING_SKIPCHK -1
+ARMING_CHECK 0
 DISARM_DELAY 0
 FS_THR_ENABLE 0
 FS_GCS_ENABLE 0
