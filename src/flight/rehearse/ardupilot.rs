@@ -3,12 +3,13 @@
 //! Read in its source (ArduCopter 4.7.0-dev, `SIM_JSON`): started with `--model JSON`, it sends a packet of servo
 //! outputs, waits for a line of JSON that says how the vehicle is then and what time it is, and goes on to that time.
 //! So it keeps racer's time without being given a clock. The line can carry a receiver's channels, but those are read
-//! 50 times a second; sticks go as MAVLink's RC_CHANNELS_OVERRIDE therefore ([`wire`]), a hundred times.
+//! 50 times a second; sticks go as MAVLink's RC_CHANNELS_OVERRIDE therefore ([`link`]), a hundred times.
 //!
 //! They are those of a pilot in ACRO with its rate loop alone: its guided modes take body rates, too, but hold an
 //! attitude by them, and leave the rates out where that is missed by more than 60 degrees.
 
 pub mod gains;
+pub mod link;
 pub mod parameters;
 pub mod process;
 pub mod wire;

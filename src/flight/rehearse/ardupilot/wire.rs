@@ -4,20 +4,17 @@ use super::super::STEP_S;
 use super::super::sticks::Sticks;
 use super::super::wire::FirmwareWire;
 use super::SERVO_BYTES;
+use super::link::StickLink;
 use crate::base::error::{Error, Result};
 use crate::flight::instruments::Actual;
-use crate::flight::live::mavlink::frame::{Frames, Scanned, frame};
-use crate::flight::live::mavlink::message::{Payload, RC_CHANNELS_OVERRIDE, STATUSTEXT, rc_channels_override};
 use std::io::ErrorKind;
-use std::net::{SocketAddr, UdpSocket};
+use std::net::UdpSocket;
 use std::time::{Duration, Instant};
 
 /// Longest wait for an answer, s.
 const ANSWER_S: f64 = 10.0;
 /// How long it may take before it is looked whether it still runs, s.
 const PROBE_S: f64 = 0.5;
-/// Who may override a receiver: a ground station, by its system.
-const GROUND_STATION: [u8; 2] = [255, 190];
 /// Steps of a control period. The firmware looks at its serial ports when more than 10 ms have gone by; a microsecond
 /// more in each period lets it look once in every, right after sticks were sent.
 const PERIOD: u64 = 10;
@@ -26,24 +23,16 @@ const PERIOD: u64 = 10;
 #[derive(Debug)]
 pub struct ArduPilotWire {
     physics: UdpSocket,
-    link: UdpSocket,
-    /// Of the firmware's end of the link, once it spoke.
-    link_at: Option<SocketAddr>,
+    link: StickLink,
     longest: Duration,
     /// Number of the last servo packet; none before the first.
     frame: Option<u32>,
     /// States that were sent.
     steps: u64,
-    /// Of the next MAVLink frame.
-    sequence: u8,
-    heard: Frames,
-    said: Option<String>,
     /// The step at which it said that it has booted.
     booted: Option<u64>,
 }
 
-/// What it says then.
-const BOOTED: &str = "ArduPilot Ready";
 /// Steps from there until it can be armed.
 const SETTLE: u64 = 3000;
 
@@ -56,27 +45,15 @@ impl ArduPilotWire {
     /// The same with another longest wait, s.
     pub fn within(longest_s: f64) -> Result<Self> {
         let failed = |error: std::io::Error| Error::Failed(format!("no UDP port for the firmware: {error}"));
-        let bind = || UdpSocket::bind(("127.0.0.1", 0)).map_err(failed);
-        let (physics, link) = (bind()?, bind()?);
-        link.set_nonblocking(true).map_err(failed)?;
+        let physics = UdpSocket::bind(("127.0.0.1", 0)).map_err(failed)?;
+        let link = StickLink::new()?;
         let longest = Duration::from_secs_f64(longest_s);
-        Ok(Self {
-            physics,
-            link,
-            link_at: None,
-            longest,
-            frame: None,
-            steps: 0,
-            sequence: 0,
-            heard: Frames::default(),
-            said: None,
-            booted: None,
-        })
+        Ok(Self { physics, link, longest, frame: None, steps: 0, booted: None })
     }
 
     /// Where it listens for servo outputs, and for MAVLink.
     pub fn ports(&self) -> [u16; 2] {
-        [&self.physics, &self.link].map(|socket| socket.local_addr().map_or(0, |address| address.port()))
+        [self.physics.local_addr().map_or(0, |address| address.port()), self.link.port()]
     }
 
     /// Waits at most so long for the first servo packet: whether it is there.
@@ -128,25 +105,6 @@ impl ArduPilotWire {
         let waited = self.longest.as_secs_f64();
         Err(Error::Failed(format!("the firmware does not answer a state: no servo outputs within {waited} s")))
     }
-
-    /// What it says of itself on the link.
-    fn listen(&mut self) {
-        let mut bytes = [0; 2048];
-        while let Ok((length, from)) = self.link.recv_from(&mut bytes) {
-            self.link_at = Some(from);
-            for found in self.heard.hear(&bytes[..length]) {
-                let Scanned::Known(frame) = found else { continue };
-                if frame.id == STATUSTEXT {
-                    let text: Vec<u8> = (1..51).map(|at| Payload(&frame.payload).u8(at)).collect();
-                    let text = String::from_utf8_lossy(&text).trim_end_matches('\0').to_string();
-                    if text == BOOTED {
-                        self.booted = Some(self.steps);
-                    }
-                    self.said = Some(text);
-                }
-            }
-        }
-    }
 }
 
 impl FirmwareWire for ArduPilotWire {
@@ -172,15 +130,11 @@ impl FirmwareWire for ArduPilotWire {
     }
 
     fn hold(&mut self, sticks: &Sticks) -> Result<()> {
-        self.listen();
-        // Before it speaks it has no receiver, and flies nothing.
-        if let Some(address) = self.link_at {
-            let payload = rc_channels_override([1, 1], super::channels(sticks));
-            let bytes = frame(self.sequence, GROUND_STATION, RC_CHANNELS_OVERRIDE, &payload);
-            self.sequence = self.sequence.wrapping_add(1);
-            // A firmware that is gone shows in its silence.
-            let _ = self.link.send_to(&bytes, address);
+        self.link.listen();
+        if self.link.booted && self.booted.is_none() {
+            self.booted = Some(self.steps);
         }
+        self.link.send(sticks);
         Ok(())
     }
 
@@ -195,6 +149,6 @@ impl FirmwareWire for ArduPilotWire {
     }
 
     fn said(&self) -> Option<String> {
-        self.said.clone()
+        self.link.said.clone()
     }
 }
