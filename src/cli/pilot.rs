@@ -64,7 +64,8 @@ Examples:
   racer pilot latest --in mavlink:udp:14540 --switch offboard --laps 3
   racer pilot latest --in udp:9101 --out msp:/dev/ttyACM0 --switch rc:8 --laps 3
   racer pilot latest --rehearse betaflight --firmware betaflight_SITL --laps 10 --log rehearsal.mcap
-  racer pilot --rehearse betaflight --firmware betaflight_SITL --excite 120 --log excited.mcap";
+  racer pilot --rehearse betaflight --firmware betaflight_SITL --excite 120 --log excited.mcap
+  racer pilot latest --rehearse ardupilot --firmware build/sitl/bin/arducopter --laps 10";
 
 /// Periods that motors are given to arm and to spin up: a second.
 const LEAD: u32 = 100;

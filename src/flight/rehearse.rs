@@ -1,85 +1,37 @@
 //! A flight on the ground: a real flight controller's firmware, as its own simulator build, closes the rate loop of a
 //! simulated vehicle.
 //!
-//! sticks -> firmware ([`betaflight`], [`firmware`]) -> motors -> [`plant`] -> sensors -> firmware, in steps of a
-//! millisecond by a common [`clock`]. `docs/flying.md` says how to build the firmware.
+//! sticks -> firmware ([`betaflight`] or [`ardupilot`], a process: [`firmware`]) -> motors -> [`plant`] -> sensors ->
+//! firmware, in steps of a millisecond. What differs between firmwares is behind a [`wire`]. `docs/flying.md` says how
+//! to build them.
 
 pub mod airframe;
+pub mod ardupilot;
 pub mod betaflight;
 pub mod clock;
 pub mod firmware;
 pub mod flown;
 pub mod plant;
+pub mod sticks;
+pub mod wire;
 
 use crate::base::error::{Error, Result};
 use crate::flight::instruments::{Actual, Instruments};
 use crate::flight::{Log, VehicleKind, VehicleRecord, motors};
 use crate::model::constants::CONTROL_S;
-use betaflight::{MOTORS_BYTES, MOTORS_PORT, STATE_PORT, STICKS_PORT, Sticks};
-use clock::SharedClock;
 use plant::Plant;
-use std::net::UdpSocket;
+use sticks::Sticks;
+use wire::FirmwareWire;
 
 /// Step of plant, gyro and firmware, s.
 pub const STEP_S: f64 = 0.001;
-
-/// Where a firmware listens and sends, on this machine.
-#[derive(Clone, Copy, Debug)]
-pub struct Ports {
-    pub state: u16,
-    pub sticks: u16,
-    pub motors: u16,
-}
-
-impl Ports {
-    /// Betaflight's, which cannot be changed.
-    pub const BETAFLIGHT: Ports = Ports { state: STATE_PORT, sticks: STICKS_PORT, motors: MOTORS_PORT };
-}
-
-/// Sockets to a firmware, and a common clock.
-#[derive(Debug)]
-pub struct FirmwareWire {
-    out: UdpSocket,
-    motors: UdpSocket,
-    ports: Ports,
-    pub clock: SharedClock,
-}
-
-impl FirmwareWire {
-    /// Takes the ports. Fails where another simulator has them.
-    pub fn new(ports: Ports, clock: SharedClock) -> Result<Self> {
-        let bind = |port: u16| {
-            UdpSocket::bind(("127.0.0.1", port)).map_err(|error| {
-                Error::Failed(format!("UDP port {port}: {error}; end the other simulator or firmware that has it"))
-            })
-        };
-        // Firmwares share their ports without a word, and then each gets some of the packets.
-        if ports.state == STATE_PORT {
-            [ports.state, ports.sticks].into_iter().try_for_each(|port| bind(port).map(drop))?;
-        }
-        let (out, motors) = (bind(0)?, bind(ports.motors)?);
-        motors.set_nonblocking(true).map_err(|error| Error::Failed(error.to_string()))?;
-        Ok(Self { out, motors, ports, clock })
-    }
-
-    fn send(&self, bytes: &[u8], port: u16) {
-        // A firmware that is gone shows in its silence.
-        let _ = self.out.send_to(bytes, ("127.0.0.1", port));
-    }
-
-    /// The newest motors that have arrived.
-    fn newest(&self) -> Option<[f64; 4]> {
-        let mut bytes = [0; MOTORS_BYTES + 1];
-        std::iter::from_fn(|| self.motors.recv(&mut bytes).ok().map(|n| betaflight::motors(&bytes[..n]))).last()?
-    }
-}
 
 /// A vehicle whose motors the firmware commands, and the log of its flight.
 #[derive(Debug)]
 pub struct Rehearsal<'a> {
     pub plant: Plant,
     pub log: Log,
-    wire: FirmwareWire,
+    wire: Box<dyn FirmwareWire>,
     instruments: Instruments<'a>,
     /// What each motor is sent, 0..1.
     motors: [f64; 4],
@@ -91,7 +43,7 @@ impl<'a> Rehearsal<'a> {
     /// At rest; the log is of a vehicle of that mass (kg) whose full command asks for those rates (rad/s).
     pub fn new(
         plant: Plant,
-        wire: FirmwareWire,
+        wire: Box<dyn FirmwareWire>,
         instruments: Instruments<'a>,
         mass_kg: f64,
         full_rate: [f64; 3],
@@ -111,23 +63,32 @@ impl<'a> Rehearsal<'a> {
         self.steps as f64 * STEP_S
     }
 
+    /// Body rates of full sticks, rad/s, of a firmware that was set up for at least `wanted`.
+    pub fn full_rates(&self, wanted: [f64; 3]) -> [f64; 3] {
+        self.wire.full_rates(wanted)
+    }
+
     /// Steps that began late, and all, by the wall; none in lockstep.
     pub fn late(&self) -> Option<[u64; 2]> {
-        self.wire.clock.late()
+        self.wire.late()
     }
 
     /// Waits for the firmware to boot and to calibrate its gyro, arms, and begins the log.
     pub fn arm(&mut self) -> Result<()> {
-        self.wire.clock.begin()?;
-        for _ in 0..300 {
+        self.wire.begin()?;
+        let [resting, armed] = self.wire.patience();
+        for _ in 0..resting {
             self.hold(&Sticks::default())?;
+            if self.wire.ready() {
+                break;
+            }
         }
-        for _ in 0..100 {
+        for _ in 0..armed {
             self.hold(&Sticks { armed: true, ..Sticks::default() })?;
         }
         if self.motors.iter().all(|share| *share <= 0.0) {
-            let advice = "its settings may ask for more; look at `status` of its command line";
-            return Err(Error::Failed(format!("the firmware does not arm: no motor turns; {advice}")));
+            let why = self.wire.said().map_or(String::new(), |said| format!("; it said last: {said}"));
+            return Err(Error::Failed(format!("the firmware does not arm: no motor turns{why}; look at its settings")));
         }
         self.steps = 0;
         self.log = Log { name: self.log.name.clone(), vehicle: self.log.vehicle, ..Log::default() };
@@ -137,8 +98,7 @@ impl<'a> Rehearsal<'a> {
 
     /// A control period with the sticks held there.
     pub fn hold(&mut self, sticks: &Sticks) -> Result<()> {
-        self.wire.send(&sticks.bytes(), self.wire.ports.sticks);
-        self.wire.clock.after_sticks()?;
+        self.wire.hold(sticks)?;
         for _ in 0..(CONTROL_S / STEP_S).round() as usize {
             self.step()?;
         }
@@ -154,10 +114,9 @@ impl<'a> Rehearsal<'a> {
         if self.log.imu.len() > before {
             self.log.motors.push(time_s, motors::row(&self.motors));
         }
-        self.wire.send(&betaflight::state(&actual, &imu), self.wire.ports.state);
-        self.wire.clock.after_step()?;
+        let sent = self.wire.step(&actual, &imu)?;
         self.plant.step(self.motors);
-        self.motors = self.wire.newest().unwrap_or(self.motors);
+        self.motors = sent.unwrap_or(self.motors);
         self.steps += 1;
         if rested != self.plant.resting {
             self.log.states.push(self.time_s(), [1.0, if rested { 1.0 } else { 0.0 }]);

@@ -1,15 +1,18 @@
 //! Flights on the ground: the plant against the simulator, and a whole rehearsal with a small firmware of our own.
 
+mod ardupilot;
+
 use racer::base::lane::Level;
 use racer::flight::instruments::Instruments;
 use racer::flight::live::heard::{Heard, Sight};
 use racer::flight::live::phase::{Phase, Reason};
 use racer::flight::live::{Live, Mission};
 use racer::flight::rehearse::airframe::Airframe;
+use racer::flight::rehearse::betaflight::wire::{BetaflightWire, Ports};
 use racer::flight::rehearse::betaflight::{STATE_BYTES, STICKS_BYTES, full_rates};
 use racer::flight::rehearse::clock::SharedClock;
 use racer::flight::rehearse::plant::Plant;
-use racer::flight::rehearse::{FirmwareWire, Ports, Rehearsal, STEP_S, flown};
+use racer::flight::rehearse::{Rehearsal, STEP_S, flown};
 use racer::flight::sensors::SensorConfig;
 use racer::flight::{fly, mcap, write};
 use racer::model::dynamics::{Craft, Factors, State, response};
@@ -169,7 +172,7 @@ fn a_policy_laps_through_a_firmware_and_its_log_is_read_again() {
     let motors = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let (told, full) = (clock.port().unwrap(), full_rates(around.full_rate));
     let controller = std::thread::spawn(move || firmware(&listens, motors, told, full));
-    let wire = FirmwareWire::new(Ports { state: at, sticks: at, motors }, clock).unwrap();
+    let wire = Box::new(BetaflightWire::new(Ports { state: at, sticks: at, motors }, clock).unwrap());
     let instruments = Instruments::new(&sensors, 1);
     let mut rehearsal = Rehearsal::new(on_pad(&mission), wire, instruments, mission.vehicle.mass_kg, around.full_rate);
     let mut live = Live::new(&mission, &around);
@@ -188,7 +191,7 @@ fn a_policy_laps_through_a_firmware_and_its_log_is_read_again() {
 #[test]
 fn a_firmware_that_does_not_answer_is_told() {
     let clock = SharedClock::lockstep_within(0.05).unwrap();
-    let wire = FirmwareWire::new(Ports { state: 9, sticks: 9, motors: 0 }, clock).unwrap();
+    let wire = Box::new(BetaflightWire::new(Ports { state: 9, sticks: 9, motors: 0 }, clock).unwrap());
     let sensors = SensorConfig::load("ideal").unwrap();
     let vehicle = Vehicle::load("seed_class").unwrap();
     let plant = Plant::new(&vehicle, Airframe::of(&vehicle), STEP_S, [0.0; 3], LEVEL);

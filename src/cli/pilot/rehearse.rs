@@ -1,22 +1,18 @@
 //! `racer pilot --rehearse`: a flight on the ground, through a flight controller's own firmware.
 
+mod start;
+
 use super::super::{CommandEnd, interrupt, print, tell};
-use crate::base::check::{BadInput, Check};
 use crate::base::fsio::Reserved;
 use crate::base::lane::Level;
 use crate::base::stats::mean;
 use crate::flight::fly;
-use crate::flight::instruments::Instruments;
 use crate::flight::live::phase::Reason;
 use crate::flight::live::{Live, Mission};
 use crate::flight::open::open_bytes;
 use crate::flight::pilot::{Pilot, PilotLimits};
-use crate::flight::rehearse::airframe::Airframe;
-use crate::flight::rehearse::betaflight::settings;
-use crate::flight::rehearse::clock::SharedClock;
-use crate::flight::rehearse::firmware::{self, Firmware};
-use crate::flight::rehearse::plant::Plant;
-use crate::flight::rehearse::{FirmwareWire, Ports, Rehearsal, STEP_S, flown};
+use crate::flight::rehearse::firmware::Firmware;
+use crate::flight::rehearse::{Rehearsal, flown};
 use crate::flight::sensors::SensorConfig;
 use crate::flight::{Log, Options, write};
 use crate::model::vehicle::Vehicle;
@@ -37,7 +33,8 @@ pub struct Args {
     /// The firmware's own simulator build
     #[arg(long, value_name = "PATH", requires = "rehearse")]
     firmware: Option<PathBuf>,
-    /// Your own command lines for the firmware, such as its `diff all`; racer sets rates, arming and log over them
+    /// Your own settings of the firmware: command lines, such as Betaflight's `diff all`, or a parameter file of
+    /// ArduPilot; racer sets rates, arming and log over them
     #[arg(long, value_name = "FILE", requires = "rehearse")]
     settings: Option<PathBuf>,
     /// The vehicle that is flown: a name or a file [default: the policy's own; seed_class for the pilot]
@@ -61,10 +58,11 @@ pub struct Args {
     /// Where the random numbers of sensors and manoeuvres start
     #[arg(long, default_value_t = 1, requires = "rehearse")]
     seed: u64,
-    /// Whose time it goes by: `lockstep` gives the firmware racer's (Linux, needs `cc`), `wall` is real time
+    /// Whose time it goes by: `lockstep` gives the firmware racer's (Betaflight: on Linux, with `cc`), `wall` is real
+    /// time (Betaflight alone)
     #[arg(long, value_name = "CLOCK", default_value = "lockstep", requires = "rehearse")]
     clock: ClockKind,
-    /// New file for the firmware's own blackbox log
+    /// New file for the firmware's own log: Betaflight's blackbox, ArduPilot's .BIN
     #[arg(long, value_name = "FILE", requires = "rehearse")]
     blackbox: Option<PathBuf>,
 }
@@ -73,10 +71,12 @@ pub struct Args {
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Kind {
     Betaflight,
+    #[value(name = "ardupilot")]
+    ArduPilot,
 }
 
 /// See [`SharedClock`].
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum ClockKind {
     Lockstep,
     Wall,
@@ -119,7 +119,7 @@ pub fn run(args: &Args, asked: Asked) -> anyhow::Result<CommandEnd> {
     for (file, bytes) in [(log, Some(write::mcap(&rehearsal.log)?)), (blackbox, firmware.blackbox())] {
         match (file, bytes) {
             (Some(file), Some(bytes)) => tell(&format!("written to {}", file.write(&bytes)?.display())),
-            (Some(_), None) => tell("the firmware wrote no blackbox log"),
+            (Some(_), None) => tell("the firmware wrote no log of its own"),
             (None, _) => {}
         }
     }
@@ -135,44 +135,6 @@ struct Flight<'a> {
 }
 
 impl<'a> Flight<'a> {
-    /// The firmware, and the vehicle on its pad.
-    fn begin(&self, position: [f64; 3], heading: f64) -> anyhow::Result<(Rehearsal<'a>, Firmware)> {
-        let Args { firmware: given, settings: own, clock, seed, .. } = self.args;
-        let clock = match clock {
-            ClockKind::Lockstep => SharedClock::lockstep()?,
-            ClockKind::Wall => SharedClock::wall(),
-        };
-        let airframe = self.airframe()?;
-        let own = own.as_ref().map_or(Ok(String::new()), |path| {
-            std::fs::read_to_string(path)
-                .map_err(|error| BadInput::new(path.display(), error, "command lines of the firmware", ""))
-        })?;
-        let path = firmware::find(given.as_deref().unwrap_or(Path::new("")))?;
-        let wire = FirmwareWire::new(Ports::BETAFLIGHT, clock)?;
-        let firmware = Firmware::start(&path, &own, &settings(self.full_rate), &wire.clock)?;
-        for line in &firmware.refused {
-            tell(&format!("the firmware refuses a setting: {line}"));
-        }
-        let attitude = [(0.5 * heading).cos(), 0.0, 0.0, (0.5 * heading).sin()];
-        let plant = Plant::new(self.vehicle, airframe, STEP_S, position, attitude);
-        let instruments = Instruments::new(self.sensors, *seed);
-        Ok((Rehearsal::new(plant, wire, instruments, self.vehicle.mass_kg, self.full_rate), firmware))
-    }
-
-    /// Derived from the vehicle, but for what was given.
-    fn airframe(&self) -> Result<Airframe, BadInput> {
-        let mut airframe = Airframe::of(self.vehicle);
-        if let Some(inertia) = &self.args.inertia {
-            airframe.inertia_kg_m2 = inertia.as_slice().try_into().map_err(|_| {
-                BadInput::new("--inertia", format!("{} numbers", inertia.len()), "three, as 0.002,0.002,0.004", "")
-            })?;
-        }
-        airframe.arm_m = self.args.arm_length.unwrap_or(airframe.arm_m);
-        airframe.torque_m = self.args.torque.unwrap_or(airframe.torque_m);
-        airframe.check().map_err(|invalid| BadInput::at("--inertia, --arm-length, --torque", invalid))?;
-        Ok(airframe)
-    }
-
     fn by_policy(&self, policy: &Snapshot, asked: &Asked) -> anyhow::Result<(Rehearsal<'a>, Firmware, CommandEnd)> {
         let about = &policy.about;
         let laps = asked.laps.unwrap_or(LAPS);

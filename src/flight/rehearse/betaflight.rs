@@ -4,6 +4,10 @@
 //! come as a u16, two bytes of nothing and 16 floats; all in this machine's byte order. The time in a state is never
 //! changed, so that the firmware's clock goes as fast as the clock it is given ([`super::clock`]).
 
+pub mod process;
+pub mod wire;
+
+use super::sticks::Sticks;
 use crate::flight::instruments::Actual;
 use std::fmt::Write;
 
@@ -21,29 +25,17 @@ const MIDDLE_US: f64 = 1500.0;
 const HALF_US: f64 = 500.0;
 const CLOSED_US: u16 = 988;
 
-/// Sticks and the switch that arms.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sticks {
-    /// Roll right, nose down, yaw left: shares of the full rates, -1..1.
-    pub rates: [f64; 3],
-    /// 0..1; none is closed, below what flies, as arming asks for.
-    pub throttle: Option<f64>,
-    pub armed: bool,
-}
-
-impl Sticks {
-    /// The packet.
-    pub fn bytes(&self) -> [u8; STICKS_BYTES] {
-        let [roll, pitch, yaw] = self.rates.map(|share| share.clamp(-1.0, 1.0) * HALF_US);
-        let pulse = |us: f64| (MIDDLE_US + us).round() as u16;
-        let throttle = self.throttle.map_or(CLOSED_US, |open| pulse(2.0 * HALF_US * (open.clamp(0.0, 1.0) - 0.5)));
-        let switch = if self.armed { 2000 } else { 1000 };
-        let mut channels = [1000u16; 16];
-        channels[..5].copy_from_slice(&[pulse(roll), pulse(pitch), throttle, pulse(-yaw), switch]);
-        let mut out = [0; STICKS_BYTES];
-        out[8..].copy_from_slice(&channels.map(u16::to_ne_bytes).concat());
-        out
-    }
+/// The packet of `held` sticks.
+pub fn sticks(held: &Sticks) -> [u8; STICKS_BYTES] {
+    let [roll, pitch, yaw] = held.rates.map(|share| share.clamp(-1.0, 1.0) * HALF_US);
+    let pulse = |us: f64| (MIDDLE_US + us).round() as u16;
+    let throttle = held.throttle.map_or(CLOSED_US, |open| pulse(2.0 * HALF_US * (open.clamp(0.0, 1.0) - 0.5)));
+    let switch = if held.armed { 2000 } else { 1000 };
+    let mut channels = [1000u16; 16];
+    channels[..5].copy_from_slice(&[pulse(roll), pulse(pitch), throttle, pulse(-yaw), switch]);
+    let mut out = [0; STICKS_BYTES];
+    out[8..].copy_from_slice(&channels.map(u16::to_ne_bytes).concat());
+    out
 }
 
 /// The packet of a state; `imu` is what was measured of its body rates (rad/s) and specific force (m/s2).
@@ -132,9 +124,9 @@ mod tests {
         assert!((0..18).all(|i| double(&packet, i) == expected[i]));
 
         let channel = |packet: &[u8], i: usize| u16::from_ne_bytes([packet[8 + 2 * i], packet[9 + 2 * i]]);
-        let flying = Sticks { rates: [1.0, -0.5, 0.25], throttle: Some(0.25), armed: true }.bytes();
+        let flying = sticks(&Sticks { rates: [1.0, -0.5, 0.25], throttle: Some(0.25), armed: true });
         assert_eq!([0, 1, 2, 3, 4].map(|i| channel(&flying, i)), [2000, 1250, 1250, 1375, 2000]);
-        let resting = Sticks::default().bytes();
+        let resting = sticks(&Sticks::default());
         assert_eq!([0, 1, 2, 3, 4].map(|i| channel(&resting, i)), [1500, 1500, 988, 1500, 1000]);
     }
 

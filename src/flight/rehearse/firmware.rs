@@ -1,61 +1,66 @@
-//! The firmware's own simulator build as a process, in a folder of its own that goes with it.
+//! A firmware's own simulator build as a process, in a folder of its own that goes with it.
 
-use super::clock::SharedClock;
 use crate::base::check::BadInput;
 use crate::base::error::{Error, Result};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use tempfile::TempDir;
+
+/// Whose firmware it is, and how a user comes by it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Maker {
+    pub name: &'static str,
+    /// How to build it.
+    pub build: &'static str,
+    /// Names of the logs that it writes end so.
+    pub log: &'static str,
+}
+
+impl Maker {
+    /// The program at `path` is none of this maker's simulator builds: `found` is what it is instead.
+    pub fn refusal(&self, path: &Path, found: String) -> BadInput {
+        let expected = format!("{}'s simulator build", self.name);
+        BadInput::new(format!("--firmware {}", path.display()), found, &expected, self.build)
+    }
+
+    /// Where the program at `path` is, for a process in another folder; an error where there is none.
+    pub fn find(&self, path: &Path) -> std::result::Result<PathBuf, BadInput> {
+        fs::canonicalize(path).map_err(|error| self.refusal(path, error.to_string()))
+    }
+}
 
 /// A running firmware. It ends with this.
 #[derive(Debug)]
 pub struct Firmware {
     child: Child,
     folder: TempDir,
-    /// Lines of the user's own settings that it did not take.
+    maker: Maker,
+    /// Lines of the user's own settings that it said it did not take.
     pub refused: Vec<String>,
 }
 
 const OUTPUT: &str = "output.txt";
-/// How it marks a line that it does not take.
-const REFUSED: &str = "###ERROR";
 
-fn refusal(path: &Path, found: String) -> BadInput {
-    let advice = "build it with `make TARGET=SITL` in Betaflight's sources (docs/flying.md)";
-    BadInput::new(format!("--firmware {}", path.display()), found, "Betaflight's simulator build", advice)
-}
-
-/// Where the program at `path` is, for a process in another folder; an error where there is none.
-pub fn find(path: &Path) -> std::result::Result<PathBuf, BadInput> {
-    fs::canonicalize(path).map_err(|error| refusal(path, error.to_string()))
+/// A folder for a firmware. Fails where none can be made.
+pub fn folder() -> Result<TempDir> {
+    tempfile::tempdir().map_err(|error| Error::Failed(format!("no temporary folder: {error}")))
 }
 
 impl Firmware {
-    /// Sets up and starts the program at the absolute `path`: with the `user`'s own command lines first, `settings`
-    /// over them, and the time of `clock`.
-    pub fn start(path: &Path, user: &str, settings: &str, clock: &SharedClock) -> Result<Self> {
-        let refuse = |found: String| refusal(path, found);
-        let folder = tempfile::tempdir().map_err(|error| Error::Failed(format!("no temporary folder: {error}")))?;
-        let own = |line: &&str| !["save", "batch", "exit", "defaults"].iter().any(|word| line.trim().starts_with(word));
-        let user: String = user.lines().filter(own).flat_map(|line| [line, "\n"]).collect();
-        let lines = format!("{user}\n{settings}save\n");
-        fs::write(folder.path().join("settings.txt"), lines).map_err(Error::write(folder.path()))?;
-        let mut set_up = Command::new(path);
-        set_up.args(["--config", "settings.txt"]).current_dir(folder.path()).stdin(Stdio::null());
-        let said = set_up.output().map_err(|error| refuse(error.to_string()))?;
-        let said = String::from_utf8_lossy(&said.stdout).into_owned();
-        if !said.contains("EEPROM saved") {
-            let last = said.lines().last().unwrap_or("nothing");
-            return Err(refuse(format!("a program that does not read its settings (--config); it said: {last}")).into());
-        }
-        let refused: Vec<_> = said.lines().filter(|line| line.contains(REFUSED)).map(str::to_string).collect();
+    /// Runs `command`, `maker`'s firmware, in `folder`. Fails where it cannot be run.
+    pub fn run(maker: Maker, mut command: Command, folder: TempDir, refused: Vec<String>) -> Result<Self> {
         let output = File::create(folder.path().join(OUTPUT)).map_err(Error::write(folder.path()))?;
-        let mut fly = Command::new(path);
-        fly.current_dir(folder.path()).stdin(Stdio::null()).stderr(Stdio::null()).stdout(output);
-        clock.give(&mut fly, folder.path())?;
-        let child = fly.spawn().map_err(|error| refuse(error.to_string()))?;
-        Ok(Self { child, folder, refused })
+        let errors = output.try_clone().map_err(Error::write(folder.path()))?;
+        command.current_dir(folder.path()).stdin(Stdio::null()).stderr(errors).stdout(output);
+        let program = PathBuf::from(command.get_program());
+        let child = command.spawn().map_err(|error| maker.refusal(&program, error.to_string()))?;
+        Ok(Self { child, folder, maker, refused })
+    }
+
+    /// How it ended, if it has.
+    pub fn ended(&mut self) -> Option<ExitStatus> {
+        self.child.try_wait().ok().flatten()
     }
 
     /// The last that it printed of why it does not arm, or else of anything.
@@ -63,14 +68,18 @@ impl Firmware {
         let output = fs::read(self.folder.path().join(OUTPUT)).unwrap_or_default();
         let output = String::from_utf8_lossy(&output);
         let why = output.lines().rev().find(|line| line.contains("Arming disabled"));
-        format!("the firmware said last: {}", why.or(output.lines().last()).unwrap_or("nothing"))
+        // ArduPilot says of every port that is not used that it is not.
+        let mut lines = output.lines().rev();
+        let last = why.or(lines.find(|line| !line.trim().is_empty() && !line.starts_with("Skipping port")));
+        format!("the firmware printed last: {}", last.unwrap_or("nothing"))
     }
 
-    /// Its newest blackbox log, if it wrote one.
+    /// Its newest log, if it wrote one.
     pub fn blackbox(&self) -> Option<Vec<u8>> {
-        let entries = fs::read_dir(self.folder.path()).ok()?;
+        let folders = [self.folder.path().to_path_buf(), self.folder.path().join("logs")];
+        let entries = folders.iter().filter_map(|folder| fs::read_dir(folder).ok()).flatten();
         let logs = entries.filter_map(|entry| Some(entry.ok()?.path()));
-        let newest: Option<PathBuf> = logs.filter(|path| path.extension().is_some_and(|e| e == "BFL")).max();
+        let newest: Option<PathBuf> = logs.filter(|path| path.extension().is_some_and(|e| e == self.maker.log)).max();
         newest.and_then(|path| fs::read(path).ok())
     }
 }

@@ -1,7 +1,7 @@
 //! Flights through the firmware: a policy's laps, and the pilot's manoeuvres.
 
 use super::Rehearsal;
-use super::betaflight::{Sticks, full_rates};
+use super::sticks::Sticks;
 use crate::base::error::Result;
 use crate::flight::live::Live;
 use crate::flight::live::heard::{Heard, Sight};
@@ -23,6 +23,7 @@ pub fn by_policy(
     key: &dyn Fn() -> bool,
 ) -> Result<()> {
     rehearsal.arm()?;
+    let at_end = rehearsal.full_rates(full_rate);
     loop {
         let (now_s, actual) = (rehearsal.time_s(), rehearsal.actual());
         let estimate = Estimate {
@@ -44,7 +45,7 @@ pub fn by_policy(
             live.machine.end(answer.reason.unwrap_or(Reason::NoState));
             break;
         }
-        let sticks = answer.setpoint.map_or(IDLE, |setpoint| sticks(&setpoint, full_rate));
+        let sticks = answer.setpoint.map_or(IDLE, |setpoint| sticks(&setpoint, at_end));
         if let Some(Setpoint { body_rates: [p, q, r], throttle, .. }) = answer.setpoint {
             rehearsal.log.setpoint.push(now_s, [p, q, r, throttle].map(f64::from));
         }
@@ -62,6 +63,7 @@ pub fn by_pilot(
     key: &dyn Fn() -> bool,
 ) -> Result<()> {
     rehearsal.arm()?;
+    let at_end = rehearsal.full_rates(full_rate);
     let mut landed_s = 0.0;
     while rehearsal.time_s() < seconds && landed_s < 1.0 && !key() {
         let (time_s, actual) = (rehearsal.time_s(), rehearsal.actual());
@@ -83,7 +85,7 @@ pub fn by_pilot(
             thrust_n: 0.0,
             thrust_to_weight: 0.0,
         };
-        rehearsal.hold(&sticks(&setpoint, full_rate))?;
+        rehearsal.hold(&sticks(&setpoint, at_end))?;
         landed_s = if pilot.landed() { landed_s + CONTROL_S } else { 0.0 };
     }
     disarm(rehearsal)
@@ -92,9 +94,8 @@ pub fn by_pilot(
 /// Armed, on the pad.
 const IDLE: Sticks = Sticks { rates: [0.0; 3], throttle: None, armed: true };
 
-/// The sticks of a setpoint, for a firmware that was set to at least `full_rate` (rad/s).
-fn sticks(setpoint: &Setpoint, full_rate: [f64; 3]) -> Sticks {
-    let at_end = full_rates(full_rate);
+/// The sticks of a setpoint, for a firmware whose full sticks ask for the rates `at_end` (rad/s).
+fn sticks(setpoint: &Setpoint, at_end: [f64; 3]) -> Sticks {
     Sticks {
         rates: std::array::from_fn(|i| f64::from(setpoint.body_rates[i]) / at_end[i]),
         throttle: Some(f64::from(setpoint.throttle)),

@@ -7,7 +7,9 @@ use racer::flight::live::duty::Duty;
 use racer::flight::live::heard::{Heard, Sight};
 use racer::flight::live::mavlink::Mavlink;
 use racer::flight::live::mavlink::frame::frame;
-use racer::flight::live::mavlink::message::{ATTITUDE_QUATERNION, HEARTBEAT, LOCAL_POSITION_NED, ODOMETRY};
+use racer::flight::live::mavlink::message::{
+    ATTITUDE_QUATERNION, HEARTBEAT, LOCAL_POSITION_NED, ODOMETRY, RC_CHANNELS_OVERRIDE, rc_channels_override,
+};
 use racer::flight::live::phase::{Phase, Reason};
 use racer::flight::live::protocol::Protocol;
 use racer::flight::live::switch::Switch;
@@ -43,7 +45,10 @@ fn said() -> Vec<u8> {
 fn pymavlink_and_racer_read_each_other() {
     let folder = tempfile::tempdir().unwrap();
     let (from, to) = (folder.path().join("from"), folder.path().join("to"));
-    std::fs::write(&from, said()).unwrap();
+    // What only a rehearsal says.
+    let pulses = rc_channels_override([3, 1], [1001, 1002, 1003, 1004, 1005, 1006, 1007, 1008]);
+    let sticks = frame(12, [3, 191], RC_CHANNELS_OVERRIDE, &pulses);
+    std::fs::write(&from, [said(), sticks].concat()).unwrap();
     let args = [Path::new("tests/python/mavlink_messages.py"), &from, &to];
     let Some(output) = python("pymavlink", &args) else { return };
     let read: Vec<Value> = serde_json::from_slice(&output).unwrap();
@@ -58,7 +63,7 @@ fn racer_was_read(read: &[Value]) {
         &["HEARTBEAT"][..],
         &commands,
         &["STATUSTEXT", "STATUSTEXT", "SET_ATTITUDE_TARGET", "STATUSTEXT", "SET_ATTITUDE_TARGET"],
-        &["HEARTBEAT", "STATUSTEXT"],
+        &["HEARTBEAT", "STATUSTEXT", "RC_CHANNELS_OVERRIDE"],
     ];
     assert_eq!(kinds, wanted.concat());
     for (i, message) in read.iter().enumerate() {
@@ -82,6 +87,9 @@ fn racer_was_read(read: &[Value]) {
     assert_eq!(rates, [1.0, -2.0, -3.0, 0.5]);
     assert_eq!((&target["time_boot_ms"], &target["q"]), (&json!(20), &json!([1.0, 0.0, 0.0, 0.0])));
     assert_eq!(fields(11)["text"], "racer ended: the policy saw what it was not traine");
+    let sticks = fields(12);
+    assert_eq!((&sticks["target_system"], &sticks["target_component"]), (&json!(3), &json!(1)));
+    assert!((1..=8).all(|i| sticks[&format!("chan{i}_raw")] == 1000 + i), "{sticks}");
 }
 
 fn state(time_us: u64, position: [f32; 3], velocity: [f32; 3], attitude: [f32; 4]) -> Heard {

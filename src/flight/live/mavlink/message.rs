@@ -7,6 +7,7 @@ pub const ATTITUDE_QUATERNION: u32 = 31;
 pub const LOCAL_POSITION_NED: u32 = 32;
 pub const RC_CHANNELS: u32 = 65;
 pub const MANUAL_CONTROL: u32 = 69;
+pub const RC_CHANNELS_OVERRIDE: u32 = 70;
 pub const COMMAND_LONG: u32 = 76;
 pub const SET_ATTITUDE_TARGET: u32 = 82;
 pub const BATTERY_STATUS: u32 = 147;
@@ -22,6 +23,7 @@ pub fn extra(id: u32) -> Option<u8> {
         LOCAL_POSITION_NED => 185,
         RC_CHANNELS => 118,
         MANUAL_CONTROL => 243,
+        RC_CHANNELS_OVERRIDE => 124,
         COMMAND_LONG => 152,
         SET_ATTITUDE_TARGET => 49,
         BATTERY_STATUS => 154,
@@ -84,6 +86,11 @@ pub fn set_attitude_target(time_ms: u32, target: [u8; 2], rates: [f32; 3], thrus
     [1.0, 0.0, 0.0, 0.0, p, q, r, thrust].iter().for_each(|x: &f32| out.extend(x.to_le_bytes()));
     out.extend([target[0], target[1], IGNORE_ATTITUDE]);
     out
+}
+
+/// Pulses (us) for `target` in place of its receiver's channels 1 to 8; the others stay its receiver's.
+pub fn rc_channels_override(target: [u8; 2], pulses: [u16; 8]) -> Vec<u8> {
+    [pulses.map(u16::to_le_bytes).concat(), target.to_vec()].concat()
 }
 
 /// A line for the pilot's ground station.

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """From a flight to a faster policy, through a real firmware: the whole loop, in laps.
 
-    python tests/python/betaflight_loop.py target/release/racer betaflight_SITL OUT [--seeds 1,2,3]
-        [--steps 80000000] [--laps 10] [--vehicle seed_class] [--seconds 120] [--excitations 2]
+    python tests/python/firmware_loop.py target/release/racer betaflight betaflight_SITL OUT
+        [--seeds 1,2,3] [--steps 80000000] [--laps 10] [--vehicle seed_class] [--seconds 120]
+        [--excitations 2] [--settings FILE]
+    python tests/python/firmware_loop.py target/release/racer ardupilot arducopter OUT
 
 The firmware flies the excitation, racer identifies the vehicle from its log and extends it by what it
 diagnoses; then policies are trained in the vehicle as its file says, as identified and, where the
-diagnosis names anything, as extended, and each flies the same laps through the same firmware. OUT is a folder: what is there already is not made
-again, so that the loop can go on where it ended. OUT/loop.csv has a line for each policy.
+diagnosis names anything, as extended, and each flies the same laps through the same firmware. OUT is
+a folder: what is there already is not made again, so that the loop can go on where it ended.
+OUT/loop.csv has a line for each policy. Without seeds (--seeds "") it ends with the vehicles.
 """
 
 import argparse
@@ -67,6 +70,7 @@ def effects(file):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("racer", type=lambda path: Path(path).resolve())
+    parser.add_argument("name", choices=["betaflight", "ardupilot"])
     parser.add_argument("firmware", type=lambda path: Path(path).resolve())
     parser.add_argument("out", type=Path)
     parser.add_argument("--seeds", default="1,2,3")
@@ -75,12 +79,14 @@ def main():
     parser.add_argument("--vehicle", default="seed_class")
     parser.add_argument("--seconds", type=int, default=120)
     parser.add_argument("--excitations", type=int, default=2)
+    parser.add_argument("--settings", type=lambda path: Path(path).resolve())
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
-    firmware = ["--rehearse", "betaflight", "--firmware", args.firmware]
+    firmware = ["--rehearse", args.name, "--firmware", args.firmware]
+    firmware += ["--settings", args.settings] if args.settings else []
     rows = []
     for name, vehicle in vehicles(args, firmware).items():
-        for seed in args.seeds.split(","):
+        for seed in filter(None, args.seeds.split(",")):
             policy = f"{name}-{seed}"
             if not (args.out / policy / "policy.safetensors").exists():
                 run(args.out, args.racer, "train", "--vehicle", vehicle, "--steps", args.steps, "--seed", seed,
