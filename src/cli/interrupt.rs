@@ -2,8 +2,8 @@
 
 use crate::base::fsio;
 use std::io::Read;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 static ASKED: AtomicBool = AtomicBool::new(false);
 /// What the first Ctrl-C is answered with; none where it ends the process.
@@ -12,6 +12,9 @@ static REMARK: Mutex<Option<&'static str>> = Mutex::new(None);
 /// From now on Ctrl-C, SIGTERM and SIGHUP leave no temporary file behind. Where the system does not allow that, they
 /// end the process as ever.
 pub fn install() {
+    // A file beyond what `ulimit -f` allows is an error of the write, told like a full disk, and no end without a word.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
     let _ = ctrlc::set_handler(|| {
         let remark = REMARK.lock().ok().and_then(|remark| *remark);
         match remark {

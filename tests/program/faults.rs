@@ -46,6 +46,22 @@ fn a_training_that_cannot_write_says_what_is_safe_and_goes_on_later() {
     assert!(policies(&run) == policies(&at.path().join("whole")));
 }
 
+/// As on a full disk: no file may grow beyond 10 kB.
+#[cfg(unix)]
+#[test]
+fn a_file_that_may_not_grow_is_told_and_the_training_goes_on_later() {
+    let at = tempfile::tempdir().unwrap();
+    let limited = format!("ulimit -f 20; exec {} train --out run {TINY}", env!("CARGO_BIN_EXE_racer"));
+    let output = Command::new("sh").args(["-c", &limited]).current_dir(at.path()).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("could not be written") && told.contains("racer train --resume run"), "{told}");
+    assert_eq!(hidden(at.path()), 0);
+    assert_eq!(racer(at.path(), &["train", "--resume", "run"]).code, 0);
+    train(at.path(), "whole");
+    assert!(policies(&at.path().join("run")) == policies(&at.path().join("whole")));
+}
+
 #[test]
 fn what_does_not_fit_into_memory_is_refused_before_there_is_a_folder() {
     let at = tempfile::tempdir().unwrap();

@@ -49,7 +49,9 @@ fn unpaid(fitted: &FittedSelection, findings: &mut [Finding]) {
     let mut cards = named(fitted, findings);
     cards.retain(|(_, card)| card.role != Role::CommandsLost);
     let places: Vec<Vec<usize>> = cards.iter().map(|(_, card)| fitted.places(card)).collect();
-    for ((i, _), deviations) in cards.into_iter().zip(unseen::pays(fitted, &unseen::parts(fitted.problem), &places)) {
+    for ((i, _), deviations) in
+        cards.into_iter().zip(unseen::pays(fitted, &unseen::parts(fitted.problem), &places, f64::INFINITY))
+    {
         if deviations < PAYS_DEVIATIONS.get() {
             findings[i].suspect("on flight that was not used for fitting it does not pay".into());
         }

@@ -74,8 +74,9 @@ pub fn deviations(differences: &[f64]) -> f64 {
 }
 
 /// How surely each of `effects` (the places of its numbers among the fitted ones) pays on unseen flight, in standard
-/// deviations, where each of `parts` in turn is unseen.
-pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>]) -> Vec<f64> {
+/// deviations, where each of `parts` in turn is unseen. No stretch tells more than `most` whitened squares, for or
+/// against.
+pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>], most: f64) -> Vec<f64> {
     let (problem, point) = (fitted.problem, fitted.point());
     let whitener = &fitted.selection.whitener;
     let mut gained: Vec<Vec<f64>> = vec![Vec::new(); effects.len()];
@@ -90,7 +91,7 @@ pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>
             let [a, b] = tried;
             let missing = if known(&a) <= known(&b) { a } else { b };
             let unseen = (0..problem.blocks).filter(|&b| out[b]);
-            gained.extend(unseen.map(|b| missing[b] - with[b]));
+            gained.extend(unseen.map(|b| (missing[b] - with[b]).clamp(-most, most)));
         }
     }
     gained.iter().map(|differences| deviations(differences)).collect()

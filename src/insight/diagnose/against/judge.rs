@@ -8,7 +8,8 @@ use super::sizes;
 use super::suspect::Suspect;
 use crate::base::stats::chi_squared_chance;
 use crate::insight::criteria::changed::{
-    BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_IMPACT, LASTING_KNOWN, LASTING_SHARE,
+    BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_IMPACT, KNOWN_DEVIATIONS, LASTING_KNOWN, LASTING_SHARE,
+    MOST_EVIDENCE,
 };
 use crate::insight::criteria::material::{LEAST_SENSOR_IMPACT, MATERIAL_SIZE};
 use crate::insight::criteria::unseen::PAYS_DEVIATIONS;
@@ -28,8 +29,9 @@ const PARTS: usize = 3;
 
 /// Judges the differences that were `found`, each beside the others.
 pub fn all(fitted: &FittedSelection, suspects: &[Suspect], found: &[FoundDifference]) -> Vec<Change> {
-    let places: Vec<Vec<usize>> = found.iter().map(|f| places(fitted, &suspects[f.suspect])).collect();
-    let pays = unseen::pays(fitted, &thirds(fitted.problem), &places);
+    let evident = |f: &FoundDifference| evident(fitted, places(fitted, &suspects[f.suspect]));
+    let places: Vec<Vec<usize>> = found.iter().map(evident).collect();
+    let pays = unseen::pays(fitted, &thirds(fitted.problem), &places, MOST_EVIDENCE.get());
     found.iter().zip(pays).map(|(found, pays)| judge(fitted, suspects, found, pays)).collect()
 }
 
@@ -79,6 +81,13 @@ fn judge(fitted: &FittedSelection, suspects: &[Suspect], found: &FoundDifference
 fn places(fitted: &FittedSelection, suspect: &Suspect) -> Vec<usize> {
     let place = |k: &usize| fitted.point().free.iter().position(|f| f == k);
     suspect.own.iter().filter_map(place).collect()
+}
+
+/// Those of the differences at `own` that are known to be any. What the others are without a third of the time is
+/// chance, and would hide what these explain of it.
+fn evident(fitted: &FittedSelection, own: Vec<usize>) -> Vec<usize> {
+    let known: Vec<usize> = own.iter().copied().filter(|&i| deviations(fitted, i) >= KNOWN_DEVIATIONS.get()).collect();
+    if known.is_empty() { own } else { known }
 }
 
 /// Stretches of each third of every flight.
