@@ -27,8 +27,8 @@ use crate::model::effects::{self, Role};
 use crate::model::vehicle::Vehicle;
 pub use change::{Both, Change, Changes, WouldShow};
 use columns::Tested;
-use search::{DifferenceSearch, FoundDifference};
-use suspect::Suspect;
+use search::DifferenceSearch;
+use suspect::{FoundDifference, Suspect};
 
 /// What changed from the flights `before` to the flights `after`, of a vehicle that is thought to be `vehicle`.
 pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Changes {

@@ -3,9 +3,8 @@
 
 use super::change::Change;
 use super::columns::later;
-use super::search::FoundDifference;
 use super::sizes;
-use super::suspect::Suspect;
+use super::suspect::{FoundDifference, Suspect};
 use crate::base::stats::chi_squared_chance;
 use crate::insight::criteria::changed::{
     BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_IMPACT, KNOWN_DEVIATIONS, LASTING_KNOWN, LASTING_SHARE,

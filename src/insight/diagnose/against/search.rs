@@ -5,7 +5,7 @@
 use super::change::Change;
 use super::columns::{Tested, tests};
 use super::judge;
-use super::suspect::Suspect;
+use super::suspect::{FoundDifference, Suspect};
 use crate::insight::criteria::changed::{MOST_CHANGES, PLAIN_SHARE};
 use crate::insight::criteria::evident::{BOUNDED_MERIT, GAIN_WORTH_A_FIT, LEAST_GAIN, SHORT_LIST};
 use crate::insight::criteria::rival::{RIVAL_KEEPS, TIE_DEVIATIONS};
@@ -19,15 +19,6 @@ use crate::insight::diagnose::select::Selection;
 use crate::insight::diagnose::size::is_bounded;
 use crate::model::effects::{Card, are_rivals};
 use rayon::prelude::*;
-
-/// A difference that was found.
-#[derive(Clone, Debug)]
-pub struct FoundDifference {
-    /// Place among the suspects.
-    pub suspect: usize,
-    /// Places of what these flights do not tell from it.
-    pub ties: Vec<usize>,
-}
 
 /// A suspect that was tried.
 struct Tried {

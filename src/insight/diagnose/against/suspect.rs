@@ -26,6 +26,15 @@ pub struct Suspect {
     pub own: Vec<usize>,
 }
 
+/// The difference of a suspect, found.
+#[derive(Clone, Debug)]
+pub struct FoundDifference {
+    /// Place among the suspects.
+    pub suspect: usize,
+    /// Places of what these flights do not tell from it.
+    pub ties: Vec<usize>,
+}
+
 /// Id, name, sentence, numbers and share that matters.
 type Workshop = (&'static str, &'static str, &'static str, Range<usize>, &'static Criterion);
 
