@@ -14,6 +14,7 @@ mod library;
 mod pilot;
 mod plan;
 mod predict;
+#[cfg(unix)]
 mod rehearse;
 mod show;
 mod study;

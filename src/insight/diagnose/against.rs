@@ -68,7 +68,7 @@ fn allowed(search: &DifferenceSearch, suspects: &[Suspect]) -> Vec<FoundDifferen
 fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch) -> Changes {
     let fitted = &FittedSelection::new(problem, &search.selection);
     let mut changes = judge::all(fitted, suspects, &search.found);
-    changes.extend(search.rejected.iter().map(|(_, change)| change.clone()));
+    changes.extend(search.rejected.iter().cloned());
     // What every fit allows for is worth a word where it is named.
     let allowed = judge::all(fitted, suspects, &allowed(search, suspects));
     changes.extend(allowed.into_iter().filter(|change| change.status != Status::Suspected));

@@ -36,7 +36,7 @@ pub struct DifferenceSearch<'a> {
     pub selection: Selection,
     pub found: Vec<FoundDifference>,
     /// What was fitted and did not hold, beside those that did.
-    pub rejected: Vec<(usize, Change)>,
+    pub rejected: Vec<Change>,
     /// What was tested last.
     pub tested: Vec<Tested>,
     /// What nearly took the place of the last one found, with its gain.
@@ -112,13 +112,13 @@ impl<'a> DifferenceSearch<'a> {
         }
         self.selection.point = before;
         self.found.pop();
-        self.rejected.extend(judged.pop().map(|change| (suspect, change)));
+        self.rejected.extend(judged.pop());
     }
 
     /// Suspects that are worth a fit, the best first, and the rivals of the very first.
     fn chosen(&self, order: &[Tested]) -> Vec<usize> {
         let mut chosen: Vec<usize> = Vec::new();
-        let rejected = |suspect: usize| self.rejected.iter().any(|(r, _)| *r == suspect);
+        let rejected = |suspect: usize| self.rejected.iter().any(|change| change.cause == self.suspects[suspect].id);
         for tested in order.iter().filter(|t| t.score.gain > GAIN_WORTH_A_FIT.get() && !rejected(t.suspect)) {
             let card = |suspect: usize| self.suspects[suspect].card;
             let leader = chosen.first().and_then(|&first| card(first));
