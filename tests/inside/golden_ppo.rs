@@ -59,6 +59,7 @@ fn hyper(golden: &Value, squashed: bool) -> Hyper {
             entropy: get("entropy_coefficient"),
             squashed,
             magnitude: get("magnitude_coefficient"),
+            saturation: 0.0,
             value: get("value_coefficient"),
         },
         learning_rate: get("learning_rate"),

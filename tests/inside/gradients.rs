@@ -17,14 +17,15 @@ const ROWS: usize = 5;
 const INPUTS: usize = 11;
 
 /// A network with weights of ordinary size everywhere, and a batch on which some ratios are clipped and some are not.
-fn example() -> (Network<f64>, [Vec<f64>; 5]) {
+/// The size of the heads' weights is that of the means: small ones keep them near zero, where `old` is about the
+/// log-probability.
+fn example(head: f64) -> (Network<f64>, [Vec<f64>; 5]) {
     let mut rng = Philox::new(5).sequence(RngStream::Weights, 0, 0);
     let mut network = Network::<f64>::zeros(INPUTS);
     for shape in [network.actor.clone(), network.critic.clone()] {
         for index in 0..3 {
             let mut layer = network.layer(&shape, index);
-            // A small head keeps the means near zero, where `old` below is about the log-probability.
-            let size = if index == 2 { 0.02 } else { 0.2 };
+            let size = if index == 2 { head } else { 0.2 };
             layer
                 .weights
                 .iter_mut()
@@ -55,7 +56,11 @@ fn batch<E>([observations, z, log_prob, advantages, returns]: &[Vec<E>; 5]) -> M
 }
 
 fn check(name: &str, weights: Weights) {
-    let (mut network, data) = example();
+    check_at(0.02, name, weights);
+}
+
+fn check_at(head: f64, name: &str, weights: Weights) {
+    let (mut network, data) = example(head);
     let batch = batch(&data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let mut updater = Updater::new(&network);
@@ -81,7 +86,7 @@ fn check(name: &str, weights: Weights) {
     }
 }
 
-const NONE: Weights = Weights { clip: 0.2, entropy: 0.0, squashed: false, magnitude: 0.0, value: 0.0 };
+const NONE: Weights = Weights { clip: 0.2, entropy: 0.0, squashed: false, magnitude: 0.0, saturation: 0.0, value: 0.0 };
 
 #[test]
 fn surrogate() {
@@ -98,24 +103,26 @@ fn entropy_and_magnitude() {
     check("entropy", Weights { entropy: 0.3, ..NONE });
     check("entropy of the action", Weights { entropy: 0.3, squashed: true, ..NONE });
     check("magnitude", Weights { magnitude: 0.9, ..NONE });
+    // Means of several units, of which only the parts beyond full stick cost.
+    check_at(0.4, "saturation", Weights { saturation: 0.9, ..NONE });
 }
 
 #[test]
 fn all_terms() {
-    check("all", Weights { clip: 0.3, entropy: 0.01, squashed: true, magnitude: 0.15, value: 0.5 });
+    check("all", Weights { clip: 0.3, entropy: 0.01, squashed: true, magnitude: 0.15, saturation: 0.4, value: 0.5 });
 }
 
 /// Factors of eight bits point the gradient the same way, within what eight bits are.
 #[test]
 fn in_bf16_the_gradient_is_nearly_the_same() {
-    let (network, data) = example();
+    let (network, data) = example(0.02);
     let mut parameters = Aligned::zeros(network.parameters.len());
     parameters.iter_mut().zip(network.parameters.iter()).for_each(|(to, from)| *to = *from as f32);
     let network = Network { actor: network.actor, critic: network.critic, parameters };
     let data = data.map(|x| x.into_iter().map(|x| x as f32).collect());
     let batch = batch(&data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
-    let weights = Weights { clip: 0.3, entropy: 0.01, squashed: true, magnitude: 0.15, value: 0.5 };
+    let weights = Weights { clip: 0.3, entropy: 0.01, squashed: true, magnitude: 0.15, saturation: 0.4, value: 0.5 };
     let [mut exact, mut rounded] = [Updater::new(&network), Updater::new(&network)];
     let losses = [
         exact.differentiate::<Portable<f32>, Exact>(&network, &batch, &rows, &weights),

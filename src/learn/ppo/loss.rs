@@ -1,10 +1,15 @@
 //! The PPO loss of a block of 16 samples and its derivatives by the networks' outputs (paper Eq. 12).
 //!
-//! total = surrogate - entropy_coefficient entropy + magnitude_coefficient E|tanh(mean)|^2 + value_coefficient value
+//! total = surrogate - entropy_coefficient entropy + magnitude_coefficient E|tanh(mean)|^2
+//!         + saturation_coefficient E|mean beyond full stick|^2 + value_coefficient value
 
 use super::squash::{Squash, squash};
 use crate::base::lane::{Lane, build, each, sum_of_squares};
 use crate::learn::policy::{ACTIONS, log_prob_of};
+
+/// Mean before the tanh from which a command counts as full stick: atanh 0.9. Beyond it the tanh hardly changes, so that
+/// neither the command's cost nor its entropy brings a mean back that has gone far.
+const FULL_STICK: f64 = 1.472_219_489_583_220_2;
 
 /// Weights of the loss's terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +21,8 @@ pub struct Weights {
     pub squashed: bool,
     /// lambda_a of Eq. 12.
     pub magnitude: f64,
+    /// Of the squared parts of the mean beyond [`FULL_STICK`].
+    pub saturation: f64,
     pub value: f64,
 }
 
@@ -39,11 +46,11 @@ pub struct LossGradient<L> {
     pub d_log_std: [L; ACTIONS],
     pub d_value: L,
     /// The terms of [`TERMS`].
-    pub terms: [L; 6],
+    pub terms: [L; TERMS.len()],
 }
 
 /// Per-sample terms, in the order of [`LossGradient::terms`]; half squared errors for `value`.
-pub const TERMS: [&str; 6] = ["surrogate", "value", "magnitude", "approx_kl", "clip_fraction", "squash"];
+pub const TERMS: [&str; 7] = ["surrogate", "value", "magnitude", "saturation", "approx_kl", "clip_fraction", "squash"];
 
 /// Loss and derivatives; `share` is 1 over the minibatch's samples and scales the derivatives.
 #[inline(always)]
@@ -61,12 +68,16 @@ pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> LossGradient<L> {
     let squashed = each!(s.mean, |x| x.tanh());
     let magnitude = sum_of_squares(squashed);
     let pull = share * L::of(2.0 * w.magnitude);
+    let limit = L::of(FULL_STICK);
+    let beyond = each!(s.mean, |x| x - x.clamp(-limit, limit));
+    let back = share * L::of(2.0 * w.saturation);
     let error = s.value - s.ret;
     let (squash, cost) = (squashes(w, s), share * L::of(-w.entropy));
     LossGradient {
         d_mean: build!(|k| {
             let slope = (-squashed[k]).mul_add(squashed[k], one);
-            (d_log_prob * noise[k]).mul_add(inverse[k], (squashed[k] * slope).mul_add(pull, cost * squash[k].d_mean))
+            let costs = beyond[k].mul_add(back, cost * squash[k].d_mean);
+            (d_log_prob * noise[k]).mul_add(inverse[k], (squashed[k] * slope).mul_add(pull, costs))
         }),
         d_log_std: build!(|k| d_log_prob.mul_add(noise[k].mul_add(noise[k], -one), cost * squash[k].d_log_std)),
         d_value: error * share * L::of(w.value),
@@ -74,6 +85,7 @@ pub fn loss<L: Lane>(w: &Weights, s: &Samples<L>, share: L) -> LossGradient<L> {
             -free.min(clipped),
             error * error * L::of(0.5),
             magnitude,
+            sum_of_squares(beyond),
             (ratio - one) - log_ratio,
             L::select(L::of(w.clip).lt((ratio - one).abs()), one, L::zero()),
             (squash[0].value + squash[1].value) + (squash[2].value + squash[3].value),

@@ -180,17 +180,17 @@ impl<'a, E: Environment> Training<'a, E> {
     /// What the steps of an iteration depend on, at `share` of the budget.
     fn hyper(&self, share: f64) -> Hyper {
         let c = self.config;
-        let scheduled = c.learning_rate + (c.learning_rate_final - c.learning_rate) * share.clamp(0.0, 1.0);
         Hyper {
             precision: self.config.precision,
             weights: Weights {
                 clip: c.clip,
-                entropy: c.entropy_at(share),
+                entropy: c.entropy_at(self.steps(), share),
                 squashed: c.entropy_squashed,
                 magnitude: c.action_magnitude * c.penalty(share),
+                saturation: c.saturation,
                 value: c.value_coefficient,
             },
-            learning_rate: scheduled * rate_after(self.setbacks),
+            learning_rate: c.learning_rate_at(self.steps(), share) * rate_after(self.setbacks),
             max_gradient_norm: c.max_gradient_norm,
             adam_epsilon: c.adam_epsilon,
         }

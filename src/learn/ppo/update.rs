@@ -38,6 +38,8 @@ pub struct Losses {
     pub value: f64,
     pub entropy: f64,
     pub magnitude: f64,
+    /// Mean of the squared parts of the mean beyond full stick; 0 where nothing saturates.
+    pub saturation: f64,
     /// Mean of (ratio - 1) - log ratio; healthy below about 0.02.
     pub approx_kl: f64,
     /// Share of ratios outside 1 +- clip; healthy at 0.05 to 0.3.
@@ -158,10 +160,21 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Updater<E> {
             let terms = chunk.get_mut().expect(POISONED).terms;
             sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term * share);
         }
-        let [surrogate, value, magnitude, approx_kl, clip_fraction, squash] = sums;
+        let [surrogate, value, magnitude, saturation, approx_kl, clip_fraction, squash] = sums;
         let entropy = policy::entropy(network.log_std().map(Into::into)) + squash;
-        let total = surrogate - weights.entropy * entropy + weights.magnitude * magnitude + weights.value * value;
-        Losses { total, surrogate, value, entropy, magnitude, approx_kl, clip_fraction, gradient_norm: norm }
+        let costs = weights.magnitude * magnitude + weights.saturation * saturation + weights.value * value;
+        let total = surrogate - weights.entropy * entropy + costs;
+        Losses {
+            total,
+            surrogate,
+            value,
+            entropy,
+            magnitude,
+            saturation,
+            approx_kl,
+            clip_fraction,
+            gradient_norm: norm,
+        }
     }
 
     /// Sums the chunks' gradients in their order, adds the entropy's, and returns the norm. On one thread, as the step

@@ -35,7 +35,8 @@ pub const BOUNDS: [Bound; 6] = [
         // About where a third of a lap's commands are at their limits.
         high: 2.0,
         below: "the policy does nothing: its commands hardly leave the middle of the stick",
-        above: "much of the lap is flown at full stick: raise ppo.action_magnitude or env.reward.action_change",
+        above: "much of the lap is flown at full stick: raise ppo.saturation, ppo.action_magnitude or \
+                env.reward.action_change",
     },
     Bound {
         column: "ppo/approx_kl",

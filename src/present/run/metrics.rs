@@ -46,6 +46,8 @@ impl LogRow {
             ("ppo/value_loss", losses.value),
             ("ppo/entropy", losses.entropy),
             ("ppo/action_magnitude", losses.magnitude),
+            // 0 where no mean command is beyond nine tenths of the stick.
+            ("ppo/saturation", losses.saturation),
             // Healthy below about 0.02.
             ("ppo/approx_kl", losses.approx_kl),
             // Healthy at 0.05 to 0.3.

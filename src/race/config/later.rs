@@ -11,7 +11,7 @@ struct Later {
     before: &'static str,
 }
 
-const LATER: [Later; 5] = [
+const LATER: [Later; 7] = [
     // Penalties were whole from the first step on.
     Later { key: "ppo.penalty_begin", before: "1.0" },
     Later { key: "ppo.penalty_full", before: "0.0" },
@@ -20,6 +20,10 @@ const LATER: [Later; 5] = [
     Later { key: "ppo.entropy_end", before: "1.0" },
     // Products were singles'.
     Later { key: "ppo.precision", before: "'f32'" },
+    // Step size and entropy depended on the share of the budget alone.
+    Later { key: "ppo.refine_after", before: "0.0" },
+    // Nothing but `action_magnitude` held commands back.
+    Later { key: "ppo.saturation", before: "0.0" },
 ];
 
 /// Whether `key` came later.

@@ -5,6 +5,7 @@ use crate::base::lane::{LANES, Lane, Lane32};
 use crate::learn::nn::gemm::Precision;
 use crate::learn::nn::mlp;
 use crate::learn::policy::ACTIONS;
+use crate::learn::ppo::loss::TERMS;
 
 /// What is done of the tiles of a minibatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +27,7 @@ pub fn run<L: Lane32, P: Precision<L>>(
     gradient: &mut [f32],
 ) {
     let zero = L::zero();
-    let mut sums = Sums { terms: [zero; 6], mean: [zero; ACTIONS], log_std: [zero; ACTIONS], value: zero };
+    let mut sums = Sums { terms: [zero; TERMS.len()], mean: [zero; ACTIONS], log_std: [zero; ACTIONS], value: zero };
     for rows in rows.chunks(TILE_ROWS) {
         L::vectorize(
             #[inline(always)]

@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+"""Makes the tables of RESULTS.md from the CSV files beside this script.
+
+    python3 results/tables.py            is every table what its CSV says? exit code 1 and the differences if not
+    python3 results/tables.py --write    puts them right
+
+A table stands between `<!-- table: NAME -->` and `<!-- end -->`, NAME being a function of this file.
+`results/measure.py` makes the CSV files again.
+"""
+
+import csv
+import difflib
+import math
+import pathlib
+import re
+import statistics
+import sys
+
+HERE = pathlib.Path(__file__).parent
+RESULTS = HERE.parent / "RESULTS.md"
+BLOCK = re.compile(r"(<!-- table: (\w+)(?: ([\w-]+))? -->\n)(.*?)(<!-- end -->)", re.S)
+
+
+def rows(name, **having):
+    """The rows of a CSV in which each column `having` names has the text that it gives."""
+    with open(HERE / f"{name}.csv", newline="") as file:
+        return [row for row in csv.DictReader(file) if all(row[k] == v for k, v in having.items())]
+
+
+def table(head, body):
+    return "".join(f"| {' | '.join(map(str, line))} |\n" for line in [head, *body]).replace(
+        "\n", f"\n|{'---|' * len(head)}\n", 1
+    )
+
+
+def wilson(hits, of):
+    """`hits of of` with the 95 % interval of the share, in percent."""
+    z = 1.96
+    share = hits / of
+    middle = (share + z * z / (2 * of)) / (1 + z * z / of)
+    half = z / (1 + z * z / of) * math.sqrt(share * (1 - share) / of + z * z / (4 * of * of))
+    return f"{hits} of {of} ({100 * max(middle - half, 0):.0f} to {100 * min(middle + half, 1):.0f} %)"
+
+
+def training(minutes):
+    """Trainings of so many minutes, seed by seed."""
+    head = ["seed", "fixed start", "lap time, s: median (5 to 95 %, best)", "random start", "saturated"]
+    return table(
+        [*head, "mean abs(da)^2", "steps"],
+        [
+            (
+                r["seed"],
+                f"{r['fixed_percent']} %",
+                f"{r['lap_s']} ({r['lap_p05_s']} to {r['lap_p95_s']}, best {r['best_s']})",
+                f"{r['random_percent']} %",
+                f"{r['saturated_percent']} %",
+                r["change_sq"],
+                f"{r['steps_million']} M",
+            )
+            for r in rows("training", minutes=minutes)
+        ],
+    )
+
+
+def loop(name):
+    """The loop through a flight controller: trained in, flown."""
+    words = {
+        "default": "the vehicle as its file says",
+        "identified": "**the vehicle as identified**",
+        "extended": "as extended",
+    }
+    return table(
+        ["trained in", "seed", "forecast, s", "flown, s", "laps", "ended"],
+        [
+            (
+                words[r["vehicle"]],
+                r["seed"],
+                f"{float(r['forecast_s']):.2f}",
+                f"{float(r['flown_s']):.2f} ({100 * float(r['share']) - 100:+.1f} %)" if r["flown_s"] else "-",
+                f"{r['laps']} of 10",
+                r["ended"],
+            )
+            for r in rows(name)
+        ],
+    )
+
+
+def against():
+    """Pairs of flights, by what is said of them."""
+    pairs = rows("against")
+    without = [r for r in pairs if r["changed"].startswith("unchanged")]
+    changed = [r for r in pairs if r not in without]
+    count = lambda of, said: sum(r["judgement"] == said for r in of)
+    shown = len(changed) - count(changed, "could not show")
+    right = count(changed, "right")
+    body = [
+        ("without: a change is named", wilson(len(without) - count(without, "right"), len(without))),
+        ("with: a right name first", wilson(right, len(changed))),
+        ("the same, of what the flights could show", wilson(right, shown)),
+        ("with: told that these flights could not show it", wilson(len(changed) - shown, len(changed))),
+        ("with: only suspected, or not noticed", wilson(count(changed, "MISSED"), len(changed))),
+        ("with: a wrong name first", wilson(count(changed, "WRONG FIRST"), len(changed))),
+    ]
+    return table([f"{len(without)} without a change, {len(changed)} with one", "pairs"], body)
+
+
+def plan():
+    """What planned flights tell apart."""
+    tied = [r for r in rows("plan") if r["apart"] and r["tied"] == "1"]
+    lengths = [float(r["plan_s"]) for r in tied]
+    apart = sum(r["apart"] == "1" for r in tied)
+    return table(
+        ["tied flights of one effect", ""],
+        [
+            ("told apart: the right cause named, and nothing else", wilson(apart, len(tied))),
+            ("planned flight, median and longest", f"{statistics.median(lengths):.0f} s, {max(lengths):.0f} s"),
+        ],
+    )
+
+
+def blackbox():
+    """Blackbox logs against blackbox_decode."""
+    flights = rows("blackbox-decode")
+    total = lambda column: sum(int(r[column]) for r in flights)
+    spaced = lambda n: f"{n:,}".replace(",", " ")
+    differ = total("differing_cells") + total("rows_missing") + total("gps_differing_cells")
+    return table(
+        ["flights", "rows", "cells compared", "differing or missing", "rows only racer reads"],
+        [(len(flights), spaced(total("rows")), spaced(total("cells")), differ, total("rows_more"))],
+    )
+
+
+def precision():
+    """Samples to 95 % of laps, by the factors' precision and the size of the minibatches."""
+    settings = {}
+    for r in rows("precision-and-minibatch"):
+        settings.setdefault(r["setting"], {}).setdefault(r["seed"], []).append(r)
+    body = []
+    for setting, seeds in settings.items():
+        first = [next((int(r["steps"]) for r in s if float(r["laps_percent"]) >= 95), None) for s in seeds.values()]
+        last = [s[-1] for s in seeds.values()]
+        million = " ".join("-" if steps is None else f"{steps / 1e6:.0f}" for steps in first)
+        median = statistics.median([math.inf if steps is None else steps / 1e6 for steps in first])
+        laps = statistics.mean(float(r["laps_percent"]) for r in last)
+        lap = statistics.median(float(r["lap_s"]) for r in last)
+        body.append((f"`{setting}`, {len(seeds)} seeds", million, f"{median:.0f}", f"{laps:.1f} %", f"{lap:.2f}"))
+    return table(["", "first snapshot with 95 % laps, M steps", "median", "laps at the end, mean", "lap, s, median"], body)
+
+
+def identify():
+    """Vehicles written from single logs, and refusals by reason."""
+    logs = rows("identify-logs")
+    written = [r for r in logs if r["written"] == "True"]
+    sources = {}
+    for r in written:
+        sources[r["thrust_from"]] = sources.get(r["thrust_from"], 0) + 1
+    thrust = ", ".join(f"{n} {source}" for source, n in sorted(sources.items(), key=lambda s: -s[1]))
+    trains = sum(r["trains"] == "True" for r in written)
+    return table(
+        ["logs", "a vehicle is written", "thrust from", "of these train", "refused"],
+        [(len(logs), len(written), thrust, trains, len(logs) - len(written))],
+    )
+
+
+MADE = {f.__name__: f for f in [training, loop, against, plan, blackbox, precision, identify]}
+
+
+def made(match):
+    begin, name, argument, _, end = match.groups()
+    if name not in MADE:
+        sys.exit(f"RESULTS.md: no table `{name}`; there are {', '.join(sorted(MADE))}")
+    return begin + MADE[name](*filter(None, [argument])) + end
+
+
+def main():
+    text = RESULTS.read_text()
+    again, count = BLOCK.subn(made, text)
+    if sys.argv[1:] == ["--write"]:
+        RESULTS.write_text(again)
+    elif sys.argv[1:]:
+        sys.exit(__doc__)
+    elif again != text:
+        sys.stdout.writelines(difflib.unified_diff(text.splitlines(True), again.splitlines(True), "RESULTS.md", "CSV"))
+        sys.exit("tables of RESULTS.md differ from their CSV: results/tables.py --write puts them right")
+    print(f"{count} tables of RESULTS.md are what their CSV files say")
+
+
+if __name__ == "__main__":
+    main()
