@@ -144,7 +144,8 @@ def precision():
         laps = statistics.mean(float(r["laps_percent"]) for r in last)
         lap = statistics.median(float(r["lap_s"]) for r in last)
         body.append((f"`{setting}`, {len(seeds)} seeds", million, f"{median:.0f}", f"{laps:.1f} %", f"{lap:.2f}"))
-    return table(["", "first snapshot with 95 % laps, M steps", "median", "laps at the end, mean", "lap, s, median"], body)
+    head = ["", "first snapshot with 95 % laps, M steps", "median", "laps at the end, mean", "lap, s, median"]
+    return table(head, body)
 
 
 def identify():

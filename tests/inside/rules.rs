@@ -117,8 +117,8 @@ fn a_vehicle_is_not_its_fault() {
     }
 }
 
-/// Rule 6: a name pays on unseen flight. Thrust lost in climbs by momentum theory was axial inflow, a vertical drag with
-/// which unseen flight was predicted worse (0.427 for 0.314 m/s2), and translational lift.
+/// Rule 6: a name pays on unseen flight. Thrust lost in climbs by momentum theory was axial inflow, a vertical drag
+/// with which unseen flight was predicted worse (0.427 for 0.314 m/s2), and translational lift.
 #[test]
 fn what_predicts_unseen_flight_worse_has_no_name() {
     let vehicle = Vehicle::draw(61);
@@ -127,8 +127,8 @@ fn what_predicts_unseen_flight_worse_has_no_name() {
     assert_eq!(names(&said(&vehicle, &log)), ["axial_inflow"]);
 }
 
-/// Rules 8 and 10: what racer writes, racer reads, and the vehicle's own rate loop is no fault. A second order and a yaw
-/// delay stood beside the sag, and `racer train` refused the extended vehicle: its thrust fell with the command.
+/// Rules 8 and 10: what racer writes, racer reads, and the vehicle's own rate loop is no fault. A second order and a
+/// yaw delay stood beside the sag, and `racer train` refused the extended vehicle: its thrust fell with the command.
 #[test]
 fn an_extended_vehicle_is_read_back() {
     let airframe = Airframe::draw(61);

@@ -70,6 +70,10 @@ pub struct PpoConfig {
     /// Step size at the end of the budget, to which it falls linearly. Not zero, or the last part of the budget teaches
     /// nothing.
     pub learning_rate_final: f64,
+    /// Million steps after which the step size also falls as one over the steps; 0 for never. How fine the rest of
+    /// learning is depends on the steps made, not on the share of the budget: without it a long training spends most of
+    /// its time on steps that are too coarse to gain by.
+    pub refine_after: f64,
     /// Discount of a step. 0.995 looks two seconds ahead, enough to slow down for the split-S.
     pub gamma: f64,
     /// Weight of longer looks in the advantage (GAE).
@@ -83,10 +87,6 @@ pub struct PpoConfig {
     pub entropy_squashed: bool,
     /// Share of `entropy` at the end of the budget; falls linearly.
     pub entropy_end: f64,
-    /// Million steps after which step size and entropy also fall as one over the steps; 0 for never. How fine the rest
-    /// of learning is depends on the steps made, not on the share of the budget: without it a long training spends most
-    /// of its time on steps that are too coarse to gain by.
-    pub refine_after: f64,
     /// Weight of the critic's squared error.
     pub value_coefficient: f64,
     /// Gradients of a minibatch with a larger norm are scaled down to it.
@@ -95,8 +95,8 @@ pub struct PpoConfig {
     pub adam_epsilon: f64,
     /// lambda_a of Eq. 12: cost of the squared mean action, in the actor's loss. Higher flies with smaller commands.
     pub action_magnitude: f64,
-    /// Cost of the squared part of a mean, before its tanh, beyond nine tenths of the stick, in the actor's loss. Without
-    /// it commands drift to full stick in long trainings, where no gradient brings them back.
+    /// Cost of the squared part of a mean, before its tanh, beyond nine tenths of the stick, in the actor's loss.
+    /// Without it commands drift to full stick in long trainings, where no gradient brings them back.
     pub saturation: f64,
     /// Share of `action_magnitude` and of the reward's `action_change` to begin with; below 1 the policy learns to fly
     /// before it learns to fly smoothly. They grow by the same factor from step to step.
@@ -120,17 +120,13 @@ impl PpoConfig {
     /// Step size of Adam after `steps`, at `share` of the budget.
     pub fn learning_rate_at(&self, steps: u64, share: f64) -> f64 {
         let falling = self.learning_rate + (self.learning_rate_final - self.learning_rate) * share.clamp(0.0, 1.0);
-        falling * self.refined(steps)
+        let refined = 1e6 * self.refine_after / steps.max(1) as f64;
+        if self.refine_after > 0.0 { falling * refined.min(1.0) } else { falling }
     }
 
-    /// Weight of the entropy after `steps`, at `share` of the budget.
-    pub fn entropy_at(&self, steps: u64, share: f64) -> f64 {
-        self.entropy * (1.0 + (self.entropy_end - 1.0) * share.clamp(0.0, 1.0)) * self.refined(steps)
-    }
-
-    /// What [`Self::refine_after`] leaves of step size and entropy.
-    fn refined(&self, steps: u64) -> f64 {
-        if self.refine_after > 0.0 { (1e6 * self.refine_after / steps.max(1) as f64).min(1.0) } else { 1.0 }
+    /// Weight of the entropy at `share` of the budget.
+    pub fn entropy_at(&self, share: f64) -> f64 {
+        self.entropy * (1.0 + (self.entropy_end - 1.0) * share.clamp(0.0, 1.0))
     }
 
     /// Environment steps of one rollout.
@@ -226,11 +222,9 @@ mod tests {
         let mut ppo = Config::load("a2rl", &[]).unwrap().ppo;
         let linear = |share: f64| ppo.learning_rate + (ppo.learning_rate_final - ppo.learning_rate) * share;
         assert_eq!([0.0, 0.5, 1.0].map(|share| ppo.learning_rate_at(20_000_000, share)), [0.0, 0.5, 1.0].map(linear));
-        let tenth =
-            [ppo.learning_rate_at(200_000_000, 0.5) / linear(0.5), ppo.entropy_at(200_000_000, 0.5) / ppo.entropy];
-        assert!(tenth.iter().all(|left| (left - 0.1).abs() < 1e-12), "{tenth:?}");
-        assert_eq!(ppo.entropy_at(0, 0.0), ppo.entropy);
+        let left = ppo.learning_rate_at(200_000_000, 0.5) / linear(0.5);
+        assert!((left - 0.1).abs() < 1e-12, "{left}");
         ppo.refine_after = 0.0;
-        assert_eq!(ppo.entropy_at(200_000_000, 0.5), ppo.entropy);
+        assert_eq!(ppo.learning_rate_at(200_000_000, 0.5), ppo.learning_rate_at(0, 0.5));
     }
 }

@@ -7,8 +7,8 @@ use super::squash::{Squash, squash};
 use crate::base::lane::{Lane, build, each, sum_of_squares};
 use crate::learn::policy::{ACTIONS, log_prob_of};
 
-/// Mean before the tanh from which a command counts as full stick: atanh 0.9. Beyond it the tanh hardly changes, so that
-/// neither the command's cost nor its entropy brings a mean back that has gone far.
+/// Mean before the tanh from which a command counts as full stick: atanh 0.9. Beyond it the tanh hardly changes, so
+/// that neither the command's cost nor its entropy brings a mean back that has gone far.
 const FULL_STICK: f64 = 1.472_219_489_583_220_2;
 
 /// Weights of the loss's terms.

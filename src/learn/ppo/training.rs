@@ -184,7 +184,7 @@ impl<'a, E: Environment> Training<'a, E> {
             precision: self.config.precision,
             weights: Weights {
                 clip: c.clip,
-                entropy: c.entropy_at(self.steps(), share),
+                entropy: c.entropy_at(share),
                 squashed: c.entropy_squashed,
                 magnitude: c.action_magnitude * c.penalty(share),
                 saturation: c.saturation,

@@ -20,7 +20,7 @@ const LATER: [Later; 7] = [
     Later { key: "ppo.entropy_end", before: "1.0" },
     // Products were singles'.
     Later { key: "ppo.precision", before: "'f32'" },
-    // Step size and entropy depended on the share of the budget alone.
+    // The step size depended on the share of the budget alone.
     Later { key: "ppo.refine_after", before: "0.0" },
     // Nothing but `action_magnitude` held commands back.
     Later { key: "ppo.saturation", before: "0.0" },
