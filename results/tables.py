@@ -18,7 +18,7 @@ import sys
 
 HERE = pathlib.Path(__file__).parent
 RESULTS = HERE.parent / "RESULTS.md"
-BLOCK = re.compile(r"(<!-- table: (\w+)(?: ([\w-]+))? -->\n)(.*?)(<!-- end -->)", re.S)
+BLOCK = re.compile(r"(<!-- table: (\w+)(?: ([\w.-]+))? -->\n)(.*?)(<!-- end -->)", re.S)
 
 
 def rows(name, **having):
@@ -58,6 +58,55 @@ def training(minutes):
                 f"{r['steps_million']} M",
             )
             for r in rows("training", minutes=minutes)
+        ],
+    )
+
+
+def budgets():
+    """Trainings of each length: medians over the seeds, and the worst."""
+    body = []
+    for minutes in ["0.5", "1", "5", "15"]:
+        seeds = rows("training", minutes=minutes)
+        if not seeds:
+            continue
+        of = lambda column: [float(r[column]) for r in seeds]
+        laps, times, full, change = map(of, ["fixed_percent", "lap_s", "saturated_percent", "change_sq"])
+        body.append(
+            (
+                minutes,
+                f"{float(seeds[0]['steps_million']):.0f} M",
+                len(seeds),
+                f"{statistics.median(laps):.1f} % ({min(laps):.1f})",
+                f"{statistics.median(times):.2f} ({min(times):.2f} to {max(times):.2f})",
+                f"{statistics.median(full):.1f} % ({max(full):.1f})",
+                f"{statistics.median(change):.3f}",
+                f"{statistics.median(of('random_percent')):.1f} %",
+            )
+        )
+    head = ["minutes", "steps", "seeds", "fixed start (worst)", "median lap, s (of seeds)", "saturated (worst)"]
+    return table([*head, "mean abs(da)^2", "random start"], body)
+
+
+def refinement():
+    """What the end of a training was like, by setting."""
+    settings = {}
+    for r in rows("refinement"):
+        settings.setdefault((r["setting"], r["budget_million"]), {})[r["seed"]] = r
+    of = lambda seeds, column: ", ".join(r[column] for r in seeds.values())
+    head = ["setting", "million steps", "fixed start, %", "median lap, s", "saturated, %", "mean abs(da)^2"]
+    return table(
+        [*head, "random start, %"],
+        [
+            (
+                setting,
+                steps,
+                of(seeds, "fixed_percent"),
+                of(seeds, "lap_s"),
+                of(seeds, "saturated_percent"),
+                of(seeds, "change_sq"),
+                of(seeds, "random_percent"),
+            )
+            for (setting, steps), seeds in settings.items()
         ],
     )
 
@@ -163,7 +212,7 @@ def identify():
     )
 
 
-MADE = {f.__name__: f for f in [training, loop, against, plan, blackbox, precision, identify]}
+MADE = {f.__name__: f for f in [training, budgets, refinement, loop, against, plan, blackbox, precision, identify]}
 
 
 def made(match):

@@ -65,7 +65,8 @@ fn check_at(head: f64, name: &str, weights: Weights) {
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let mut updater = Updater::new(&network);
     let losses = updater.differentiate::<Portable<f64>, Exact>(&network, &batch, &rows, &weights);
-    assert!((0.05..0.95).contains(&losses.clip_fraction), "{name}: {losses:?}");
+    let clipped = (0.05..0.95).contains(&losses.clip_fraction);
+    assert!(clipped || losses.saturation > 0.01, "{name} takes no part: {losses:?}");
     let gradient = updater.gradient.to_vec();
     let largest = gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
     assert!(largest > 1e-4, "{name} has no gradient");
