@@ -47,7 +47,7 @@ COMMANDS = {
 # Steps that two idle Sapphire Rapids cores make in so many minutes (0.62 M a second); seeds.
 TRAININGS = {"0.5": (18_600_000, 8), "1": (37_200_000, 4), "5": (186_000_000, 4), "15": (558_000_000, 4)}
 COLUMNS = ["minutes", "seed", "steps_million", "fixed_percent", "lap_s", "lap_p05_s", "lap_p95_s", "best_s",
-           "random_percent", "saturated_percent", "change_sq"]
+           "random_percent", "saturated_percent", "change_sq", "build"]
 
 
 def trained(minutes, seed, run):
@@ -57,7 +57,8 @@ def trained(minutes, seed, run):
     numbers = [f"{TRAININGS[minutes][0] / 1e6:.1f}", f"{100 * fixed['lap_completion']:.1f}"]
     numbers += [f"{lap[k]:.2f}" for k in ["median", "p05", "p95", "best"]]
     numbers += [f"{100 * best['random']['lap_completion']:.1f}", f"{100 * fixed['saturated_share']:.1f}"]
-    return [minutes, seed, *numbers, f"{fixed['mean_action_change_sq']:.4f}"]
+    build = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
+    return [minutes, seed, *numbers, f"{fixed['mean_action_change_sq']:.4f}", build.strip()]
 
 
 def training(racer, only, threads):

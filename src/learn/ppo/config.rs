@@ -96,7 +96,8 @@ pub struct PpoConfig {
     /// lambda_a of Eq. 12: cost of the squared mean action, in the actor's loss. Higher flies with smaller commands.
     pub action_magnitude: f64,
     /// Cost of the squared part of a mean, before its tanh, beyond nine tenths of the stick, in the actor's loss.
-    /// Without it commands drift to full stick in long trainings, where no gradient brings them back.
+    /// Without it commands drift to full stick in long trainings, where no gradient brings them back. It grows from
+    /// nothing at `refine_after`.
     pub saturation: f64,
     /// Share of `action_magnitude` and of the reward's `action_change` to begin with; below 1 the policy learns to fly
     /// before it learns to fly smoothly. They grow by the same factor from step to step.
@@ -120,8 +121,18 @@ impl PpoConfig {
     /// Step size of Adam after `steps`, at `share` of the budget.
     pub fn learning_rate_at(&self, steps: u64, share: f64) -> f64 {
         let falling = self.learning_rate + (self.learning_rate_final - self.learning_rate) * share.clamp(0.0, 1.0);
-        let refined = 1e6 * self.refine_after / steps.max(1) as f64;
-        if self.refine_after > 0.0 { falling * refined.min(1.0) } else { falling }
+        falling * self.coarse(steps)
+    }
+
+    /// Weight of the saturation after `steps`: what refining takes from the step size. A policy that is still learning
+    /// to fly needs the whole stick.
+    pub fn saturation_at(&self, steps: u64) -> f64 {
+        if self.refine_after > 0.0 { self.saturation * (1.0 - self.coarse(steps)) } else { self.saturation }
+    }
+
+    /// What [`Self::refine_after`] leaves of the step size.
+    fn coarse(&self, steps: u64) -> f64 {
+        if self.refine_after > 0.0 { (1e6 * self.refine_after / steps.max(1) as f64).min(1.0) } else { 1.0 }
     }
 
     /// Weight of the entropy at `share` of the budget.
@@ -224,6 +235,8 @@ mod tests {
         assert_eq!([0.0, 0.5, 1.0].map(|share| ppo.learning_rate_at(20_000_000, share)), [0.0, 0.5, 1.0].map(linear));
         let left = ppo.learning_rate_at(200_000_000, 0.5) / linear(0.5);
         assert!((left - 0.1).abs() < 1e-12, "{left}");
+        let [early, late] = [20_000_000, 200_000_000].map(|steps| ppo.saturation_at(steps));
+        assert!(early == 0.0 && (late / ppo.saturation - 0.9).abs() < 1e-12, "{early}, {late}");
         ppo.refine_after = 0.0;
         assert_eq!(ppo.learning_rate_at(200_000_000, 0.5), ppo.learning_rate_at(0, 0.5));
     }

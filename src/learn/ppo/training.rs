@@ -187,7 +187,7 @@ impl<'a, E: Environment> Training<'a, E> {
                 entropy: c.entropy_at(share),
                 squashed: c.entropy_squashed,
                 magnitude: c.action_magnitude * c.penalty(share),
-                saturation: c.saturation,
+                saturation: c.saturation_at(self.steps()),
                 value: c.value_coefficient,
             },
             learning_rate: c.learning_rate_at(self.steps(), share) * rate_after(self.setbacks),
