@@ -5,8 +5,8 @@
     python3 results/measure.py NAME... [--with KEY=VALUE...]
     python3 results/tables.py --write              afterwards: the tables of RESULTS.md
 
-A measurement goes on where it was left: what its CSV has already is not done again. Delete the CSV, or the rows, to
-begin anew. Build first: `cargo build --release`. Times are of two cores.
+Trainings go on where they were left: what the CSV has already is not done again, delete its rows to begin anew. Build
+first: `cargo build --release`. Times are of two cores.
 """
 
 import argparse
@@ -25,7 +25,7 @@ BENCH = "cargo bench --bench hidden_effects --"
 LOOP = "python3 tests/python/firmware_loop.py target/release/racer"
 # Name: needs, about how long, and the command; a list of trainings is a command of its own.
 COMMANDS = {
-    "against": ([], "1.5 h", f"{BENCH} --against --n 100 --seconds 120 --seed 15 --jobs 2 --csv results/against.csv"),
+    "against": ([], "1.5 h", f"{BENCH} --against --n 100 --seconds 60 --seed 13 --jobs 2 --csv results/against.csv"),
     "plan": ([], "4 h", f"{BENCH} --plan --n 130 --seed 4 --jobs 2 --csv results/plan.csv"),
     "matched": ([], "2 h", f"{BENCH} --n 60 --seed 31 --tier matched --jobs 2"),
     "unmatched": ([], "0.5 h", f"{BENCH} --n 14 --seed 32 --tier unmatched --jobs 2"),

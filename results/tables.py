@@ -83,7 +83,7 @@ def budgets():
                 f"{statistics.median(of('random_percent')):.1f} %",
             )
         )
-    head = ["minutes", "steps", "seeds", "fixed start (worst)", "median lap, s (of seeds)", "saturated (worst)"]
+    head = ["minutes", "steps", "seeds", "fixed start (worst)", "lap, s (of seeds)", "saturated (worst)"]
     return table([*head, "mean abs(da)^2", "random start"], body)
 
 
@@ -93,19 +93,10 @@ def refinement():
     for r in rows("refinement"):
         settings.setdefault((r["setting"], r["budget_million"]), {})[r["seed"]] = r
     of = lambda seeds, column: ", ".join(r[column] for r in seeds.values())
-    head = ["setting", "million steps", "fixed start, %", "median lap, s", "saturated, %", "mean abs(da)^2"]
     return table(
-        [*head, "random start, %"],
+        ["setting", "million steps", "fixed start, %", "median lap, s", "saturated, %"],
         [
-            (
-                setting,
-                steps,
-                of(seeds, "fixed_percent"),
-                of(seeds, "lap_s"),
-                of(seeds, "saturated_percent"),
-                of(seeds, "change_sq"),
-                of(seeds, "random_percent"),
-            )
+            (setting, steps, of(seeds, "fixed_percent"), of(seeds, "lap_s"), of(seeds, "saturated_percent"))
             for (setting, steps), seeds in settings.items()
         ],
     )
@@ -197,22 +188,7 @@ def precision():
     return table(head, body)
 
 
-def identify():
-    """Vehicles written from single logs, and refusals by reason."""
-    logs = rows("identify-logs")
-    written = [r for r in logs if r["written"] == "True"]
-    sources = {}
-    for r in written:
-        sources[r["thrust_from"]] = sources.get(r["thrust_from"], 0) + 1
-    thrust = ", ".join(f"{n} {source}" for source, n in sorted(sources.items(), key=lambda s: -s[1]))
-    trains = sum(r["trains"] == "True" for r in written)
-    return table(
-        ["logs", "a vehicle is written", "thrust from", "of these train", "refused"],
-        [(len(logs), len(written), thrust, trains, len(logs) - len(written))],
-    )
-
-
-MADE = {f.__name__: f for f in [training, budgets, refinement, loop, against, plan, blackbox, precision, identify]}
+MADE = {f.__name__: f for f in [training, budgets, refinement, loop, against, plan, blackbox, precision]}
 
 
 def made(match):
