@@ -83,7 +83,7 @@ def budgets():
                 f"{statistics.median(of('random_percent')):.1f} %",
             )
         )
-    head = ["minutes", "steps", "seeds", "fixed start (worst)", "lap, s (of seeds)", "saturated (worst)"]
+    head = ["minutes", "steps", "seeds", "pad (worst)", "lap, s (of seeds)", "saturated (worst)"]
     return table([*head, "mean abs(da)^2", "random start"], body)
 
 
