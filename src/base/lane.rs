@@ -271,6 +271,27 @@ pub trait Lane32: Lane<Elem = f32> + Single {
     fn from_bits(bits: Self::Bits) -> Self;
     /// The bits of [`bf16::pair`] of every lane: a block to be stored, no numbers.
     fn bf16_pairs(first: Self, second: Self) -> Self;
+
+    /// Whether the CPU has [`Lane32::dot`] for this block.
+    #[inline(always)]
+    fn has_dot() -> bool {
+        false
+    }
+    /// [`Real::vectorize`] where [`Lane32::dot`] and [`Lane32::dot_pairs`] may be called: only if it has them.
+    #[inline(always)]
+    fn vectorize_dot<X>(f: impl FnOnce() -> X) -> X {
+        f()
+    }
+    /// The sum of this and of both products of pairs, as [`bf16`]'s `Avx512` unit makes it.
+    #[inline(always)]
+    fn dot(self, _a: Self, _b: Self) -> Self {
+        unreachable!("this block has no products of pairs")
+    }
+    /// [`Lane32::bf16_pairs`] by instructions that take what is below the normal numbers as zero, as `dot` does.
+    #[inline(always)]
+    fn dot_pairs(first: Self, second: Self) -> Self {
+        Self::bf16_pairs(first, second)
+    }
 }
 
 /// An unsigned 32-bit integer, or 16 of them: what random numbers are made of.

@@ -44,7 +44,7 @@ pub(super) use operator;
 /// and words `W`.
 macro_rules! block {
     ($block:ident, $words:ident, $truth:ident, $n:tt registers, fuses: $fuses:literal,
-     tile: $rows:literal x $blocks:literal, features: $features:literal) => {
+     tile: $rows:literal x $blocks:literal, features: $features:literal $(, dot: $dot:literal if $has_dot:path)?) => {
         use $crate::base::lane::block::{operator, registers};
         use $crate::base::lane::{Bits, Lane, Lane32, Mask, Real, Single, Tiled, Word, math};
 
@@ -244,6 +244,31 @@ macro_rules! block {
             fn bf16_pairs(first: Self, second: Self) -> Self {
                 Self(registers!($n, bf16_pairs, first.0, second.0))
             }
+            $(
+                #[inline(always)]
+                fn has_dot() -> bool {
+                    $has_dot()
+                }
+                #[inline(always)]
+                fn vectorize_dot<X>(f: impl FnOnce() -> X) -> X {
+                    #[inline(never)]
+                    #[target_feature(enable = $features, enable = $dot)]
+                    fn inner<X>(f: impl FnOnce() -> X) -> X {
+                        f()
+                    }
+                    assert!(Self::has_dot());
+                    // SAFETY: the CPU has what was asserted; of the rest, see `lane/block.rs`.
+                    unsafe { inner(f) }
+                }
+                #[inline(always)]
+                fn dot(self, a: Self, b: Self) -> Self {
+                    Self(registers!($n, dot, self.0, a.0, b.0))
+                }
+                #[inline(always)]
+                fn dot_pairs(first: Self, second: Self) -> Self {
+                    Self(registers!($n, dot_pairs, first.0, second.0))
+                }
+            )?
         }
 
         impl Word for $words {

@@ -5,7 +5,6 @@ pub mod amx;
 mod avx2;
 mod avx512;
 mod sse2;
-pub mod vdpbf16;
 
 pub use avx2::Avx2;
 pub use avx512::Avx512;
@@ -17,4 +16,9 @@ pub fn has_avx2() -> bool {
 
 pub fn has_avx512() -> bool {
     has_avx2() && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
+}
+
+/// `VDPBF16PS`, and the permutation of 16-bit words that its factors need.
+pub fn has_avx512_bf16() -> bool {
+    has_avx512() && is_x86_feature_detected!("avx512bf16") && is_x86_feature_detected!("avx512bw")
 }

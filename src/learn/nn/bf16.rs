@@ -5,9 +5,9 @@
 
 use super::HIDDEN;
 use super::aligned::Aligned;
-use super::gemm::{Broadcast, Exact, Finish, Precision};
+use super::gemm::{Broadcast, Exact, Finish, Precision, multiply_pairs};
 use crate::base::lane::bf16::{Bf16Unit, product};
-use crate::base::lane::{COLUMNS, LANES, Lane32, build};
+use crate::base::lane::{COLUMNS, LANES, Lane, Lane32, build};
 use std::cell::RefCell;
 
 /// Products with factors in bf16, on the best unit of this CPU.
@@ -56,12 +56,45 @@ impl<L: Lane32> Precision<L> for Bf16 {
             let (padded, words) = (rows.next_multiple_of(LANES), inner.div_ceil(2 * LANES) * LANES);
             packed.reserve(padded, words);
             let product = Bf16Product { rows, inner, words, a, b, packed, finish };
-            L::vectorize(
-                #[inline(always)]
-                // SAFETY: the matrices are as large as was asserted, and what is packed as was resized.
-                || unsafe { product.run::<L>() },
-            );
+            // SAFETY: the matrices are as large as was asserted, and what is packed as was resized.
+            if Bf16Unit::best() == Bf16Unit::Avx512 && L::has_dot() {
+                L::vectorize_dot(
+                    #[inline(always)]
+                    || unsafe { product.run_in_registers::<L>() },
+                );
+            } else {
+                L::vectorize(
+                    #[inline(always)]
+                    || unsafe { product.run::<L>() },
+                );
+            }
         });
+    }
+}
+
+/// Words as the numbers of the same bits.
+fn as_numbers(words: &[u32]) -> &[f32] {
+    // SAFETY: as many, of the same size and alignment, and any bits are a number.
+    unsafe { std::slice::from_raw_parts(words.as_ptr().cast(), words.len()) }
+}
+
+/// A finish without its row of sums.
+struct Unsummed<'a, F>(&'a mut F);
+
+impl<L: Lane, F: Finish<L>> Finish<L> for Unsummed<'_, F> {
+    #[inline(always)]
+    fn rows(&self) -> usize {
+        self.0.rows()
+    }
+    #[inline(always)]
+    unsafe fn start(&self, row: usize, block: usize) -> L {
+        // SAFETY: promised by the caller.
+        unsafe { self.0.start(row, block) }
+    }
+    #[inline(always)]
+    unsafe fn end(&mut self, row: usize, block: usize, pair: [L; 2]) {
+        // SAFETY: promised by the caller.
+        unsafe { self.0.end(row, block, pair) }
     }
 }
 
@@ -78,20 +111,33 @@ struct Bf16Product<'a, F> {
 }
 
 impl<F> Bf16Product<'_, F> {
+    /// All of it in this block's registers.
+    #[inline(always)]
+    unsafe fn run_in_registers<L: Lane32>(mut self)
+    where
+        F: Finish<L>,
+    {
+        // SAFETY: promised by the caller, and what is packed is as large as its shape.
+        unsafe {
+            self.pack::<L, true>();
+            // The last pairs of zeros are left out.
+            let words = self.inner / (2 * LANES) * LANES + LANES.min(self.inner % (2 * LANES));
+            let (a, b) = (as_numbers(&self.packed.a), as_numbers(&self.packed.b));
+            let a = Broadcast { data: a, row: self.words, column: 1 };
+            multiply_pairs::<L, _>(self.rows, words, a, b, Unsummed(&mut self.finish));
+            self.sums::<L>();
+        }
+    }
+
+    /// By a unit that leaves the product in memory.
     #[inline(always)]
     unsafe fn run<L: Lane32>(mut self)
     where
         F: Finish<L>,
     {
-        const { assert!(HIDDEN == COLUMNS) }
         // SAFETY: promised by the caller.
         unsafe {
-            if self.a.column == 1 {
-                self.pack_rows::<L>()
-            } else {
-                self.pack_columns::<L>()
-            }
-            self.pack_b::<L>();
+            self.pack::<L, false>();
             let Packed { a, b, c } = &mut *self.packed;
             product(Bf16Unit::best(), self.rows.next_multiple_of(LANES), self.words, a, b, c);
             let c = self.packed.c.as_ptr();
@@ -102,18 +148,33 @@ impl<F> Bf16Product<'_, F> {
                     self.finish.end(row, block, sums);
                 }
             }
-            if F::SUMS {
-                self.sums::<L>();
-            }
+            self.sums::<L>();
         }
     }
 
-    /// The row of sums of B's columns, in singles.
+    #[inline(always)]
+    unsafe fn pack<L: Lane32, const DOT: bool>(&mut self) {
+        const { assert!(HIDDEN == COLUMNS) }
+        // SAFETY: promised by the caller.
+        unsafe {
+            if self.a.column == 1 {
+                self.pack_rows::<L, DOT>()
+            } else {
+                self.pack_columns::<L, DOT>()
+            }
+            self.pack_b::<L, DOT>();
+        }
+    }
+
+    /// The row of sums of B's columns, in singles, if it is wanted.
     #[inline(always)]
     unsafe fn sums<L: Lane32>(&mut self)
     where
         F: Finish<L>,
     {
+        if !F::SUMS {
+            return;
+        }
         for block in (0..HIDDEN / LANES).step_by(2) {
             // SAFETY: promised by the caller.
             unsafe {
@@ -129,13 +190,14 @@ impl<F> Bf16Product<'_, F> {
 
     /// Pairs of the block at `p` and the one so many numbers after it, or zeros.
     #[inline(always)]
-    unsafe fn pair<L: Lane32>(p: *const f32, second: Option<usize>) -> L {
+    unsafe fn pair<L: Lane32, const DOT: bool>(p: *const f32, second: Option<usize>) -> L {
         // SAFETY: promised by the caller.
-        unsafe { L::bf16_pairs(L::load(p), second.map_or(L::zero(), |second| L::load(p.add(second)))) }
+        let (first, second) = unsafe { (L::load(p), second.map_or(L::zero(), |second| L::load(p.add(second)))) };
+        if DOT { L::dot_pairs(first, second) } else { L::bf16_pairs(first, second) }
     }
 
     #[inline(always)]
-    unsafe fn pack_b<L: Lane32>(&mut self) {
+    unsafe fn pack_b<L: Lane32, const DOT: bool>(&mut self) {
         let (b, to) = (self.b.as_ptr(), self.packed.b.as_mut_ptr().cast::<f32>());
         for word in 0..self.words {
             let row = 2 * word - word % LANES;
@@ -145,7 +207,7 @@ impl<F> Bf16Product<'_, F> {
                     let to = to.add(word * COLUMNS + block);
                     if row < self.inner {
                         let second = (row + LANES < self.inner).then_some(LANES * HIDDEN);
-                        Self::pair::<L>(b.add(row * HIDDEN + block), second).store(to);
+                        Self::pair::<L, DOT>(b.add(row * HIDDEN + block), second).store(to);
                     } else {
                         L::zero().store(to);
                     }
@@ -156,7 +218,7 @@ impl<F> Bf16Product<'_, F> {
 
     /// A whose neighbours along the inner dimension are neighbours in memory.
     #[inline(always)]
-    unsafe fn pack_rows<L: Lane32>(&mut self) {
+    unsafe fn pack_rows<L: Lane32, const DOT: bool>(&mut self) {
         let (a, to) = (self.a.data.as_ptr(), self.packed.a.as_mut_ptr().cast::<f32>());
         for row in 0..self.rows {
             for word in (0..self.words).step_by(LANES) {
@@ -164,7 +226,7 @@ impl<F> Bf16Product<'_, F> {
                 // SAFETY: promised by the caller.
                 unsafe {
                     let from = a.add(row * self.a.row + 2 * word);
-                    Self::pair::<L>(from, second).store(to.add(row * self.words + word));
+                    Self::pair::<L, DOT>(from, second).store(to.add(row * self.words + word));
                 }
             }
         }
@@ -172,7 +234,7 @@ impl<F> Bf16Product<'_, F> {
 
     /// A whose rows are neighbours in memory: 16 rows of 16 pairs are packed side by side and transposed.
     #[inline(always)]
-    unsafe fn pack_columns<L: Lane32>(&mut self) {
+    unsafe fn pack_columns<L: Lane32, const DOT: bool>(&mut self) {
         let (a, to) = (self.a.data.as_ptr(), self.packed.a.as_mut_ptr().cast::<f32>());
         for row in (0..self.rows).step_by(LANES) {
             for word in (0..self.words).step_by(LANES) {
@@ -182,7 +244,7 @@ impl<F> Bf16Product<'_, F> {
                         let first = 2 * word + i;
                         if first < self.inner {
                             let second = (first + LANES < self.inner).then_some(LANES * self.a.column);
-                            Self::pair::<L>(a.add(first * self.a.column + row), second)
+                            Self::pair::<L, DOT>(a.add(first * self.a.column + row), second)
                         } else {
                             L::zero()
                         }
@@ -200,7 +262,7 @@ impl<F> Bf16Product<'_, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::lane::Portable;
+    use crate::base::lane::{Kernel, Level, Portable, dispatch};
     use crate::base::rng::{Philox, RngStream};
     use crate::learn::nn::finish::Accumulate;
     use rand::RngExt;
@@ -228,6 +290,36 @@ mod tests {
                                 && (if column == 1 { inner } else { rows }) % LANES == 0),
                     "{rows} x {inner}: {off}"
                 );
+            }
+        }
+    }
+
+    struct Sums<'a>(usize, usize, Broadcast<'a, f32>, &'a [f32]);
+
+    impl Kernel for Sums<'_> {
+        type Output = Vec<f32>;
+        #[inline(always)]
+        fn run<L: Lane32>(self) -> Vec<f32> {
+            let Sums(rows, inner, a, b) = self;
+            let mut sums = vec![0.0; (rows + 1) * HIDDEN];
+            <Bf16 as Precision<L>>::multiply(rows, inner, a, b, Accumulate::<_, true>(&mut sums));
+            sums
+        }
+    }
+
+    /// What stays in registers is bit for bit the arithmetic by definition, which AMX does not claim to be.
+    #[test]
+    fn every_block_multiplies_alike() {
+        let mut rng = Philox::new(4).sequence(RngStream::Weights, 0, 0);
+        let by_row = [(64, 64), (47, 64), (16, 16), (64, 80)].map(|(rows, inner)| (rows, inner, inner, 1));
+        let by_column = [(64, 64), (64, 41), (16, 16), (48, 80)].map(|(rows, inner)| (rows, inner, 1, rows));
+        for (rows, inner, row, column) in by_row.into_iter().chain(by_column) {
+            let a: Vec<f32> = (0..80 * 64).map(|_| rng.random_range(-1.0..1.0)).collect();
+            let b: Vec<f32> = (0..80 * 64).map(|_| rng.random_range(-1.0..1.0)).collect();
+            let of = |level| dispatch(level, Sums(rows, inner, Broadcast { data: &a, row, column }, &b));
+            let wanted = of(Level::Portable);
+            for level in Level::available() {
+                assert!(of(level) == wanted, "{rows} x {inner}, {level}");
             }
         }
     }

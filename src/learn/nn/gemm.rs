@@ -6,7 +6,8 @@
 //! becomes of it while it is still in registers is a [`Finish`].
 
 use super::HIDDEN;
-use crate::base::lane::{LANES, Lane, Tiled, build};
+use crate::base::lane::{LANES, Lane, Lane32, Tiled, build};
+use std::marker::PhantomData;
 
 /// Blocks of a row of B and C.
 const BLOCKS: usize = HIDDEN / LANES;
@@ -55,6 +56,31 @@ impl<L: Lane> Precision<L> for Exact {
     }
 }
 
+/// What an inner step adds to a sum.
+trait Term<L> {
+    fn added(sum: L, left: L, right: L) -> L;
+}
+
+/// A product of numbers.
+struct Numbers;
+
+impl<L: Lane> Term<L> for Numbers {
+    #[inline(always)]
+    fn added(sum: L, left: L, right: L) -> L {
+        left.mul_add(right, sum)
+    }
+}
+
+/// Two products, of pairs in bf16.
+struct Pairs;
+
+impl<L: Lane32> Term<L> for Pairs {
+    #[inline(always)]
+    fn added(sum: L, left: L, right: L) -> L {
+        sum.dot(left, right)
+    }
+}
+
 /// C[rows][64] = A[rows][inner] B[inner][64], and the sums of B's columns after it if [`Finish::SUMS`].
 ///
 /// # Panics
@@ -64,7 +90,7 @@ pub fn multiply<L: Lane, F: Finish<L>>(rows: usize, inner: usize, a: Broadcast<L
     let all = rows + F::SUMS as usize;
     assert!(rows > 0 && inner > 0 && finish.rows() >= all && b.len() >= inner * HIDDEN);
     assert!(a.data.len() > (rows - 1) * a.row + (inner - 1) * a.column);
-    let product = Product::<L, F> { inner, all, a, b: b.as_ptr(), finish };
+    let product = Product::<L, F, Numbers> { inner, all, a, b: b.as_ptr(), finish, term: PhantomData };
     // A function of its own: the caller would otherwise hold a copy of every tile shape for every product.
     L::vectorize(
         #[inline(always)]
@@ -72,16 +98,32 @@ pub fn multiply<L: Lane, F: Finish<L>>(rows: usize, inner: usize, a: Broadcast<L
     );
 }
 
-struct Product<'a, L: Lane, F> {
+/// As [`multiply`], of pairs in bf16 ([`Lane32::dot_pairs`]) along the inner dimension.
+///
+/// # Safety
+/// Inside [`Lane32::vectorize_dot`]; the matrices are as large as they say, and [`Finish::SUMS`] is false.
+#[inline(always)]
+pub unsafe fn multiply_pairs<L: Lane32, F: Finish<L>>(
+    rows: usize,
+    words: usize,
+    a: Broadcast<f32>,
+    b: &[f32],
+    finish: F,
+) {
+    L::tiled(Product::<L, F, Pairs> { inner: words, all: rows, a, b: b.as_ptr(), finish, term: PhantomData });
+}
+
+struct Product<'a, L: Lane, F, T> {
     inner: usize,
     /// Rows of C, that of sums included.
     all: usize,
     a: Broadcast<'a, L::Elem>,
     b: *const L::Elem,
     finish: F,
+    term: PhantomData<T>,
 }
 
-impl<L: Lane, F: Finish<L>> Tiled for Product<'_, L, F> {
+impl<L: Lane, F: Finish<L>, T: Term<L>> Tiled for Product<'_, L, F, T> {
     /// Covers the rows with tiles of R x C blocks, then with what remains; the row of sums is in the last tile.
     #[inline(always)]
     fn run<const R: usize, const C: usize>(mut self) {
@@ -105,7 +147,7 @@ impl<L: Lane, F: Finish<L>> Tiled for Product<'_, L, F> {
     }
 }
 
-impl<L: Lane, F: Finish<L>> Product<'_, L, F> {
+impl<L: Lane, F: Finish<L>, T: Term<L>> Product<'_, L, F, T> {
     /// The last N rows, at most R. Tests of constants: what they exclude is not even compiled.
     #[inline(always)]
     unsafe fn last<const N: usize, const R: usize, const C: usize>(&mut self, row: usize) {
@@ -138,7 +180,7 @@ impl<L: Lane, F: Finish<L>> Product<'_, L, F> {
                         *sums = build!(|j| sums[j] + right[j]);
                     } else {
                         let left = L::splat(*a.add(i * self.a.row));
-                        *sums = build!(|j| left.mul_add(right[j], sums[j]));
+                        *sums = build!(|j| T::added(sums[j], left, right[j]));
                     }
                 }
                 a = a.wrapping_add(self.a.column);

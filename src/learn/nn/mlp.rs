@@ -107,10 +107,13 @@ fn head<L: Lane>(w: &[L::Elem], b: &[L::Elem], samples: usize, pitch: usize, h: 
 #[inline(always)]
 pub fn turn<L: Lane>(shape: &Layout, p: &[L::Elem], turned: &mut [L::Elem]) {
     let p = &p[shape.second()];
-    for (r, c) in (0..HIDDEN * HIDDEN / LANES / LANES).map(|i| (i / 4 * LANES, i % 4 * LANES)) {
+    for i in 0..HIDDEN * HIDDEN / LANES / LANES {
+        let (r, c) = (i / 4 * LANES, i % 4 * LANES);
         let mut block = build!(|i| L::from_slice(&p[(r + i) * HIDDEN + c..]));
         L::transpose(&mut block);
-        (0..LANES).for_each(|i| block[i].write(&mut turned[(c + i) * HIDDEN + r..]));
+        for (i, row) in block.into_iter().enumerate() {
+            row.write(&mut turned[(c + i) * HIDDEN + r..]);
+        }
     }
 }
 

@@ -11,8 +11,18 @@ type T = __mmask16;
 // 24 accumulators of 32 registers that hold a block each.
 block!(
     Avx512, Avx512Words, Avx512Truth, 1 registers, fuses: true, tile: 6 x 4,
-    features: "avx512f,avx512dq,avx2,fma"
+    features: "avx512f,avx512dq,avx2,fma", dot: "avx512bw,avx512bf16" if super::has_avx512_bf16
 );
+
+/// Words 0 and 16, 1 and 17, ...
+const ALTERNATING: [u32; LANES] = {
+    let (mut words, mut i) = ([0; LANES], 0);
+    while i < LANES {
+        words[i] = (i | (i + LANES) << 16) as u32;
+        i += 1;
+    }
+    words
+};
 
 operations! {
     splat(x: f32) -> R = _mm512_set1_ps(x);
@@ -57,6 +67,12 @@ operations! {
     first_half(a: R) -> W = _mm512_srli_epi32::<16>(near(_mm512_castps_si512(a)));
     second_half(a: R) -> W = _mm512_and_si512(near(_mm512_castps_si512(a)), _mm512_set1_epi32(-0x10000));
     bf16_pairs(a: R, b: R) -> R = _mm512_castsi512_ps(_mm512_or_si512(first_half(a), second_half(b)));
+    halves(a: R) -> __m512bh = std::mem::transmute::<R, __m512bh>(a);
+    dot(sum: R, a: R, b: R) -> R = _mm512_dpbf16_ps(sum, halves(a), halves(b));
+    // The conversion puts all of `a` before all of `b`.
+    both(a: R, b: R) -> W = std::mem::transmute::<__m512bh, W>(_mm512_cvtne2ps_pbh(b, a));
+    dot_pairs(a: R, b: R) -> R = _mm512_castsi512_ps(_mm512_permutexvar_epi16(alternating(), both(a, b)));
+    alternating() -> W = _mm512_loadu_si512(ALTERNATING.as_ptr().cast());
 }
 
 /// Transposing through memory, 16 stores and 256 scalar moves, would be slow: registers are unpacked.
