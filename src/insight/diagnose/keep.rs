@@ -17,7 +17,7 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
     loop {
         let suspected: Vec<&str> =
             findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
-        let kept = selection.without(problem, &suspected).as_given(problem, &given);
+        let kept = selection.without(problem, &suspected).with_given(problem, &given);
         let fitted = FittedSelection::new(problem, &kept);
         if let Some(finding) = leaning(&fitted, findings) {
             finding.suspect("its size is not sure without what is only suspected".into());

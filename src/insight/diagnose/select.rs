@@ -33,7 +33,7 @@ pub struct Selection {
 
 impl Selection {
     /// The same with these numbers as the base vehicle has them, fitted again.
-    pub fn as_given(self, problem: &Problem, numbers: &[usize]) -> Self {
+    pub fn with_given(self, problem: &Problem, numbers: &[usize]) -> Self {
         let mut free = self.point.free.clone();
         free.retain(|k| !numbers.contains(k));
         if free.len() == self.point.free.len() {
