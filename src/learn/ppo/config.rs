@@ -74,7 +74,7 @@ pub struct PpoConfig {
     /// learning is depends on the steps made, not on the share of the budget: without it a long training spends most of
     /// its time on steps that are too coarse to gain by.
     pub refine_after: f64,
-    /// Discount of a step. 0.995 looks two seconds ahead, enough to slow down for the split-S.
+    /// Discount of a step. 0.99 looks a second ahead: about a gate, enough to slow down for the split-S.
     pub gamma: f64,
     /// Weight of longer looks in the advantage (GAE).
     pub lambda: f64,
