@@ -2,7 +2,7 @@
 //! written, one folder a rule, for another build's `racer diagnose log.mcap --vehicle base.toml`.
 
 use crate::truth::Vehicle;
-use crate::truth::effects::{Hidden, outside, unmatched};
+use crate::truth::effects::{Hidden, unmatched};
 use crate::truth::hidden::{Setting, Style, fly};
 use crate::truth::other::{self, Airframe, causes};
 use racer::flight::Log;
@@ -141,20 +141,4 @@ fn an_extended_vehicle_is_read_back() {
     std::fs::write(&path, toml::to_string(&vehicle).unwrap()).unwrap();
     let read = racer::model::vehicle::Vehicle::load(path.to_str().unwrap()).unwrap();
     assert!(read == vehicle && read.effects.sizes.contains_key("voltage_sag"), "{read:?}");
-}
-
-/// Rule 11: what could be gained is not what the catalogue can gain. A force that no effect has was left, and the gain
-/// of the one named beside it was all that there was to gain.
-#[test]
-fn a_gain_is_a_share_of_what_any_model_could_gain() {
-    for seed in [61, 62, 63] {
-        let vehicle = Vehicle::draw(seed);
-        let mut rng = StdRng::seed_from_u64(seed);
-        let drag = Hidden::sized("rotor_drag", 0.2, &vehicle, &mut rng);
-        let force = outside::draw("magnus", SETTING.seconds, &mut rng);
-        let diagnosis = said(&vehicle, &fly(&vehicle, &[drag, force.clone()], &SETTING));
-        println!("{seed} {:?} {:?} {:?} {}", force.size, names(&diagnosis), diagnosis.captured, diagnosis.headline());
-        for (k, g) in &diagnosis.held_out { println!("   {k} {:.3} {:.3}", g.before, g.after); }
-    }
-    panic!();
 }
