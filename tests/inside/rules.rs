@@ -2,7 +2,7 @@
 //! written, one folder a rule, for another build's `racer diagnose log.mcap --vehicle base.toml`.
 
 use crate::truth::Vehicle;
-use crate::truth::effects::{Hidden, unmatched};
+use crate::truth::effects::{Hidden, outside, unmatched};
 use crate::truth::hidden::{Setting, Style, fly};
 use crate::truth::other::{self, Airframe, causes};
 use racer::flight::Log;
@@ -141,4 +141,17 @@ fn an_extended_vehicle_is_read_back() {
     std::fs::write(&path, toml::to_string(&vehicle).unwrap()).unwrap();
     let read = racer::model::vehicle::Vehicle::load(path.to_str().unwrap()).unwrap();
     assert!(read == vehicle && read.effects.sizes.contains_key("voltage_sag"), "{read:?}");
+}
+
+/// Rule 8: an extended vehicle is no worse in any part of unseen flight. A drag that is there, beside air that blows at
+/// one place: over all thirds the extended vehicle was better, in the last one 20 % worse sideways, and it was written.
+#[test]
+fn a_vehicle_that_fails_in_a_third_is_not_written() {
+    let vehicle = Vehicle::draw(61);
+    let mut rng = StdRng::seed_from_u64(61);
+    let drag = Hidden::sized("rotor_drag", 0.5, &vehicle, &mut rng);
+    let fan = outside::draw("fan", SETTING.seconds, &mut rng);
+    let Diagnosed { diagnosis, vehicle: extended, .. } = diagnosed(&vehicle, &fly(&vehicle, &[drag, fan], &SETTING));
+    let why = diagnosis.not_extended.unwrap_or_default();
+    assert!(extended.is_none() && why.contains("% worse"), "{why}");
 }

@@ -1,5 +1,5 @@
-//! Never worse: whether the extended model predicts unseen flight worse, in any channel, than the vehicle that was
-//! given or the compact model fitted to the same flights; and which effect does it.
+//! Never worse: whether the extended model predicts unseen flight, all of it or a part, worse in any channel than the
+//! vehicle that was given or the compact model fitted to the same flights; and which effect does it.
 
 use super::channels::{CHANNELS, FORCE, NAMES, TURN, VOLTAGE, kind};
 use super::fit::FitPoint;
@@ -70,24 +70,32 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
         as_given[..=DISCHARGE].copy_from_slice(&problem.model.base[..=DISCHARGE]);
         tried(&mut given, &as_given);
     }
-    // What a vehicle predicts: the kinematics are the sensors' own.
-    let channels = (0..TURN).chain([VOLTAGE]).filter(|&c| c < FORCE + 3 || c == VOLTAGE);
-    let rises = channels.filter_map(|c| {
-        let against = [&compact[c], &given[c]].into_iter().filter_map(|before| rise(before, &extended[c]));
-        Some((c, against.max_by(f64::total_cmp)?))
-    });
-    let (c, by) = rises.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Worse { number: c, channel: NAMES[c].0, by, blamed: blamed(fitted, c) })
+    // All unseen flight, then each part: what pays in two thirds may fail in the third.
+    let mut spans = parts(problem);
+    spans.insert(0, vec![true; problem.blocks]);
+    spans.iter().find_map(|span| {
+        let of =
+            |squares: &[f64]| -> Vec<f64> { squares.iter().zip(span).filter(|(_, s)| **s).map(|(x, _)| *x).collect() };
+        // What a vehicle predicts: the kinematics are the sensors' own.
+        let channels = (0..TURN).chain([VOLTAGE]).filter(|&c| c < FORCE + 3 || c == VOLTAGE);
+        let rises = channels.filter_map(|c| {
+            let after = of(&extended[c]);
+            let against = [&compact[c], &given[c]].into_iter().filter_map(|before| rise(&of(before), &after));
+            Some((c, against.max_by(f64::total_cmp)?))
+        });
+        let (c, by) = rises.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(Worse { number: c, channel: NAMES[c].0, by, blamed: blamed(fitted, c, span) })
+    })
 }
 
-/// The effect of the simulator that shows in channel `c` and without which that has the least error on unseen flight,
-/// less than with it.
-fn blamed(fitted: &FittedSelection, c: usize) -> Option<&'static Card> {
+/// The effect of the simulator that shows in channel `c` and without which that has the least error on unseen flight in
+/// the `span`, less than with it.
+fn blamed(fitted: &FittedSelection, c: usize, span: &[bool]) -> Option<&'static Card> {
     let problem = fitted.problem;
     let total = |x: &[f64], out: &[bool]| {
         let mut sums = zeros(problem);
         add(problem, &mut sums, &problem.residuals(&problem.predict(x)), out);
-        sums[c].iter().sum::<f64>()
+        sums[c].iter().zip(span).filter(|(_, s)| **s).map(|(x, _)| x).sum::<f64>()
     };
     let shows = |card: &&Card| card.channels.contains(&kind(c)) && !fitted.places(card).is_empty();
     let cards: Vec<&'static Card> = MODEL.into_iter().filter(shows).collect();
