@@ -102,6 +102,23 @@ def refinement():
     )
 
 
+def discount():
+    """What a discount and other settings of a short budget bring."""
+    settings = {}
+    for r in rows("discount"):
+        settings.setdefault((r["setting"], r["steps_million"]), []).append(r)
+    body = []
+    for (setting, steps), seeds in settings.items():
+        of = lambda column: [float(r[column]) for r in seeds if r[column]]
+        laps = of("fixed_percent")
+        enough = f"{sum(x >= 95 for x in laps)} of {len(laps)}"
+        lap, full = (f"{statistics.median(of(column)):.{digits}f}" for column, digits in
+                     [("lap_s", 2), ("saturated_percent", 1)])
+        body.append((setting, steps, f"{statistics.mean(laps):.1f} ({min(laps):.1f})", enough, lap, full))
+    head = ["setting", "million steps", "laps, %, mean (worst)", "seeds with 95 %", "median lap, s", "saturated, %"]
+    return table(head, body)
+
+
 def loop(name):
     """The loop through a flight controller: trained in, flown."""
     words = {
@@ -188,7 +205,7 @@ def precision():
     return table(head, body)
 
 
-MADE = {f.__name__: f for f in [training, budgets, refinement, loop, against, plan, blackbox, precision]}
+MADE = {f.__name__: f for f in [training, budgets, refinement, discount, loop, against, plan, blackbox, precision]}
 
 
 def made(match):
