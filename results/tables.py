@@ -142,6 +142,20 @@ def loop(name):
     )
 
 
+def rotorpy():
+    """Policies in rotorpy, by what they were trained in."""
+    flown = lambda r: f"{float(r['flown_s']):.2f} ({100 * float(r['share']) - 100:+.1f} %)" if r["share"] else (
+        f"{float(r['flown_s']):.2f}" if r["flown_s"] else "-")
+    return table(
+        ["trained in the vehicle", "gamma", "seed", "forecast, s", "flown, s", "laps", "ended"],
+        [
+            (r["trained_in"], r["gamma"], r["seed"], f"{float(r['forecast_s']):.2f}" if r["forecast_s"] else "-",
+             flown(r), r["laps"], r["ended"])
+            for r in rows("rotorpy")
+        ],
+    )
+
+
 def against():
     """Pairs of flights, by what is said of them."""
     pairs = rows("against")
@@ -205,7 +219,7 @@ def precision():
     return table(head, body)
 
 
-MADE = {f.__name__: f for f in [training, budgets, refinement, discount, loop, against, plan, blackbox, precision]}
+MADE = {f.__name__: f for f in [training, budgets, refinement, discount, loop, rotorpy, against, plan, blackbox, precision]}
 
 
 def made(match):

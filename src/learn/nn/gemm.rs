@@ -62,9 +62,9 @@ trait Term<L> {
 }
 
 /// A product of numbers.
-struct Numbers;
+struct OneProduct;
 
-impl<L: Lane> Term<L> for Numbers {
+impl<L: Lane> Term<L> for OneProduct {
     #[inline(always)]
     fn added(sum: L, left: L, right: L) -> L {
         left.mul_add(right, sum)
@@ -72,9 +72,9 @@ impl<L: Lane> Term<L> for Numbers {
 }
 
 /// Two products, of pairs in bf16.
-struct Pairs;
+struct TwoProducts;
 
-impl<L: Lane32> Term<L> for Pairs {
+impl<L: Lane32> Term<L> for TwoProducts {
     #[inline(always)]
     fn added(sum: L, left: L, right: L) -> L {
         sum.dot(left, right)
@@ -90,7 +90,7 @@ pub fn multiply<L: Lane, F: Finish<L>>(rows: usize, inner: usize, a: Broadcast<L
     let all = rows + F::SUMS as usize;
     assert!(rows > 0 && inner > 0 && finish.rows() >= all && b.len() >= inner * HIDDEN);
     assert!(a.data.len() > (rows - 1) * a.row + (inner - 1) * a.column);
-    let product = Product::<L, F, Numbers> { inner, all, a, b: b.as_ptr(), finish, term: PhantomData };
+    let product = Product::<L, F, OneProduct> { inner, all, a, b: b.as_ptr(), finish, term: PhantomData };
     // A function of its own: the caller would otherwise hold a copy of every tile shape for every product.
     L::vectorize(
         #[inline(always)]
@@ -110,7 +110,7 @@ pub unsafe fn multiply_pairs<L: Lane32, F: Finish<L>>(
     b: &[f32],
     finish: F,
 ) {
-    L::tiled(Product::<L, F, Pairs> { inner: words, all: rows, a, b: b.as_ptr(), finish, term: PhantomData });
+    L::tiled(Product::<L, F, TwoProducts> { inner: words, all: rows, a, b: b.as_ptr(), finish, term: PhantomData });
 }
 
 struct Product<'a, L: Lane, F, T> {
