@@ -73,6 +73,7 @@ fn rounded(x: f32) -> u32 {
 }
 
 /// C[rows][64] = A[rows][words] B[words][64], where a word is a pair: `rows` and `words` are multiples of [`LANES`].
+/// Here `Avx512` is the same bits number by number; its instruction works in registers ([`super::Lane32::dot`]).
 ///
 /// # Panics
 /// If they are not, a matrix is too small, or the CPU does not have `unit`.
