@@ -106,16 +106,16 @@ def discount():
     """What a discount and other settings of a short budget bring."""
     settings = {}
     for r in rows("discount"):
-        settings.setdefault((r["setting"], r["steps_million"]), []).append(r)
+        settings.setdefault((r["track"], r["setting"], r["steps_million"]), []).append(r)
     body = []
-    for (setting, steps), seeds in settings.items():
+    for (track, setting, steps), seeds in settings.items():
         of = lambda column: [float(r[column]) for r in seeds if r[column]]
         laps = of("fixed_percent")
         enough = f"{sum(x >= 95 for x in laps)} of {len(laps)}"
         lap, full = (f"{statistics.median(of(column)):.{digits}f}" for column, digits in
                      [("lap_s", 2), ("saturated_percent", 1)])
-        body.append((setting, steps, f"{statistics.mean(laps):.1f} ({min(laps):.1f})", enough, lap, full))
-    head = ["setting", "million steps", "laps, %, mean (worst)", "seeds with 95 %", "median lap, s", "saturated, %"]
+        body.append((track, setting, steps, f"{statistics.mean(laps):.1f} ({min(laps):.1f})", enough, lap, full))
+    head = ["track", "setting", "million steps", "laps, %, mean (worst)", "seeds with 95 %", "median lap, s", "saturated, %"]
     return table(head, body)
 
 
@@ -219,7 +219,8 @@ def precision():
     return table(head, body)
 
 
-MADE = {f.__name__: f for f in [training, budgets, refinement, discount, loop, rotorpy, against, plan, blackbox, precision]}
+TABLES = [training, budgets, refinement, discount, loop, rotorpy, against, plan, blackbox, precision]
+MADE = {f.__name__: f for f in TABLES}
 
 
 def made(match):
