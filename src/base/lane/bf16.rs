@@ -162,6 +162,37 @@ mod tests {
         }
     }
 
+    /// A sum and the two factors' first and second numbers.
+    struct Dot<'a>([&'a [f32; LANES]; 5]);
+
+    impl Kernel for Dot<'_> {
+        type Output = Option<[f32; LANES]>;
+        #[inline(always)]
+        fn run<L: Lane32>(self) -> Self::Output {
+            let [sum, a, b, c, d] = self.0.map(|x| L::from_array(*x));
+            L::has_dot().then(|| {
+                L::vectorize_dot(
+                    #[inline(always)]
+                    || sum.dot(L::dot_pairs(a, b), L::dot_pairs(c, d)).to_array(),
+                )
+            })
+        }
+    }
+
+    /// Where the CPU has the instruction, whether or not it is the best unit there.
+    #[test]
+    fn the_instruction_is_its_definition() {
+        let mut rng = Philox::new(3).sequence(RngStream::Weights, 0, 0);
+        for _ in 0..1000 {
+            let x: [[f32; LANES]; 5] = std::array::from_fn(|_| numbers(LANES, &mut rng).try_into().unwrap());
+            let wanted: [f32; LANES] =
+                std::array::from_fn(|i| dot(x[0][i], pair(x[1][i], x[2][i]), pair(x[3][i], x[4][i])));
+            for level in Level::available() {
+                assert!(dispatch(level, Dot(x.each_ref())).is_none_or(|sums| sums == wanted), "{level}");
+            }
+        }
+    }
+
     #[test]
     fn every_unit_multiplies() {
         let mut rng = Philox::new(1).sequence(RngStream::Weights, 0, 0);

@@ -307,7 +307,7 @@ mod tests {
         }
     }
 
-    /// What stays in registers is bit for bit the arithmetic by definition, which AMX does not claim to be.
+    /// What stays in registers has the same bits on each block where the sum begins with zero.
     #[test]
     fn every_block_multiplies_alike() {
         let mut rng = Philox::new(4).sequence(RngStream::Weights, 0, 0);
