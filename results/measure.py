@@ -50,15 +50,42 @@ COLUMNS = ["minutes", "seed", "steps_million", "fixed_percent", "lap_s", "lap_p0
            "random_percent", "saturated_percent", "change_sq", "build"]
 
 
+# What else was tried: a name, the track, settings, million steps, seeds.
+BEFORE = ["ppo.gamma=0.995", "ppo.average=0"]
+LAST = ["ppo.average=0"]
+TRIED = [
+    ("gamma 0.995, weights as they are", "a2rl_s2", BEFORE, 18.6, 8),
+    ("gamma 0.995, weights as they are", "a2rl_s2", BEFORE, 37.2, 4),
+    ("gamma 0.995, weights as they are", "a2rl_s2", BEFORE, 186.0, 4),
+    ("gamma 0.99, weights as they are", "a2rl_s2", LAST, 18.6, 8),
+    ("gamma 0.99, weights as they are", "a2rl_s2", LAST, 37.2, 4),
+    ("gamma 0.99, weights as they are", "a2rl_s2", LAST, 186.0, 4),
+]
+
+
+def build():
+    """The commit that is measured."""
+    command = ["git", "rev-parse", "--short", "HEAD"]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def evaluated(run):
+    """The evaluation of the policy that a finished training chose."""
+    return json.loads((run / "evaluation.json").read_text())
+
+
+def percent(share):
+    return f"{100 * share:.1f}"
+
+
 def trained(minutes, seed, run):
     """The row of a finished training."""
-    best = json.loads((run / "evaluation.json").read_text())
+    best = evaluated(run)
     fixed, lap = best["fixed"], best["fixed"]["lap_time_s"]
-    numbers = [f"{TRAININGS[minutes][0] / 1e6:.1f}", f"{100 * fixed['lap_completion']:.1f}"]
+    numbers = [f"{TRAININGS[minutes][0] / 1e6:.1f}", percent(fixed["lap_completion"])]
     numbers += [f"{lap[k]:.2f}" for k in ["median", "p05", "p95", "best"]]
-    numbers += [f"{100 * best['random']['lap_completion']:.1f}", f"{100 * fixed['saturated_share']:.1f}"]
-    build = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True).stdout
-    return [minutes, seed, *numbers, f"{fixed['mean_action_change_sq']:.4f}", build.strip()]
+    numbers += [percent(best["random"]["lap_completion"]), percent(fixed["saturated_share"])]
+    return [minutes, seed, *numbers, f"{fixed['mean_action_change_sq']:.4f}", build()]
 
 
 def training(racer, only, threads):

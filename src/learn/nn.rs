@@ -147,6 +147,11 @@ impl<E: Copy + Default> Network<E> {
 }
 
 impl Network<f32> {
+    /// Moves every parameter toward that of `other` by this share of the way.
+    pub fn toward(&mut self, other: &Self, share: f32) {
+        self.parameters.iter_mut().zip(&other.parameters[..]).for_each(|(own, to)| *own += share * (to - *own));
+    }
+
     /// Orthogonal weights, zero biases, `log_std` for every command.
     pub fn initialised(inputs: usize, log_std: f64, rng: &mut Sequence) -> Self {
         let mut network = Self::zeros(inputs);

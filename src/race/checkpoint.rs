@@ -22,7 +22,7 @@ pub type SavedBlock = Block<Portable<f32>>;
 pub type RaceState = TrainingState<SavedBlock>;
 
 /// A format is this and a version. The version changes where an older racer would misread the file.
-const FORMAT: &str = "racer-checkpoint-1";
+const FORMAT: &str = "racer-checkpoint-2";
 /// The metadata's only key.
 const METADATA: &str = "racer";
 
@@ -55,6 +55,7 @@ pub fn to_bytes(state: &RaceState, note: &str) -> Result<Vec<u8>, Error> {
     state.environments.iter().for_each(|block| write_block(block, &mut environments));
     let all = [
         ("network", Dtype::F32, numbers(&state.network.parameters)),
+        ("average", Dtype::F32, numbers(&state.average.parameters)),
         ("adam.first", Dtype::F32, numbers(&state.adam.first)),
         ("adam.second", Dtype::F32, numbers(&state.adam.second)),
         ("order", Dtype::U32, words(&state.order)),
@@ -100,10 +101,14 @@ fn read_content(content: &[u8], race: &Race) -> Result<(RaceState, String), Stri
         Ok(chunks.iter().map(|&b| u32::from_le_bytes(b)).collect())
     };
     let mut network = Network::<f32>::zeros(OBSERVATIONS);
+    let mut average = network.clone();
     let mut adam = Adam::new(network.parameters.len());
-    for (name, to) in
-        [("network", &mut network.parameters), ("adam.first", &mut adam.first), ("adam.second", &mut adam.second)]
-    {
+    for (name, to) in [
+        ("network", &mut network.parameters),
+        ("average", &mut average.parameters),
+        ("adam.first", &mut adam.first),
+        ("adam.second", &mut adam.second),
+    ] {
         let from = words(name)?;
         if from.len() != to.len() {
             return Err(format!("{name} of {} numbers", from.len()));
@@ -119,7 +124,10 @@ fn read_content(content: &[u8], race: &Race) -> Result<(RaceState, String), Stri
     }
     let Counts { iterations, steps, seconds, snapshots, setbacks, note, .. } = counts;
     let order = words("order")?;
-    Ok((TrainingState { iterations, steps, seconds, snapshots, setbacks, network, adam, order, environments }, note))
+    Ok((
+        TrainingState { iterations, steps, seconds, snapshots, setbacks, network, average, adam, order, environments },
+        note,
+    ))
 }
 
 /// Adds the bits of all numbers of `block`.

@@ -53,9 +53,9 @@ fn the_configuration_of_a_run_says_what_it_said() {
     let said = ["track=square", "budget.steps=4000000", "seed=2", "eval.agents=64", "budget.snapshots=2"];
     // Its entropy was that of the Gaussian before the tanh, without a key to say so, and the default another weight.
     let entropy = ["ppo.entropy=3e-3", "ppo.entropy_squashed=false", "ppo.entropy_end=1.0"];
-    // It looked further ahead, its step size knew the share of the budget alone, and nothing pulled commands off the
-    // stops.
-    let later = ["ppo.gamma=0.995", "ppo.refine_after=0.0", "ppo.saturation=0.0"];
+    // It looked further ahead, its step size knew the share of the budget alone, nothing pulled commands off the stops,
+    // and the weights were kept as the last iteration left them.
+    let later = ["ppo.gamma=0.995", "ppo.refine_after=0.0", "ppo.saturation=0.0", "ppo.average=0.0"];
     let now = config("a2rl", &[&said[..], &entropy, &later].concat());
     assert_eq!(config(CONFIG, &[]), now);
     assert!(!config(CONFIG, &[]).ppo.entropy_squashed);

@@ -2,6 +2,7 @@
 
 use racer::base::lane::{LANES, Lane, Portable};
 use racer::base::rng::{Philox, RngStream};
+use racer::learn::ppo::Environment;
 use racer::model::dynamics::{Craft, Factors, State};
 use racer::model::track::Track;
 use racer::model::vehicle::Vehicle;
@@ -10,6 +11,7 @@ use racer::race::env::gates::crossing;
 use racer::race::env::observe::{LAYOUT, OBSERVATIONS, layout};
 use racer::race::env::reset::{self, Start, StartPlace};
 use racer::race::env::reward::TERMS;
+use racer::race::env::tally::RaceTally;
 use racer::race::env::terminate::CAUSES;
 use racer::race::env::{Block, Race};
 
@@ -159,8 +161,30 @@ fn starts() {
         assert!(speed <= race.config.reset.speed_m_s[1]);
         assert!((22.2..24.0).contains(&start.craft.state.voltage));
     }
+    for i in 0..200 {
+        let gate = i as usize % track.gates.len();
+        let start = reset::draw(&race, &mut rng.sequence(RngStream::Reset, i, 0), StartPlace::Toward(gate), None);
+        let before = (gate + track.gates.len() - 1) % track.gates.len();
+        assert!([before, gate].contains(&start.target), "toward {gate}, but to {} first", start.target);
+    }
     let pad = reset::draw(&race, &mut rng.sequence(RngStream::Reset, 0, 0), StartPlace::Pad, Some(Factors::NOMINAL));
     assert_eq!((pad.craft.state.position, pad.target, pad.craft.state.voltage), (track.start.position_m, 0, 24.0));
+}
+
+/// After a failure, and after no other end, the next episode starts on the way to the gate that was missed.
+#[test]
+fn a_failure_is_tried_again() {
+    let (race, _) = race("env.reset.retry_share=1");
+    let targets = |clock: f32| {
+        let mut block = block(&race, [5.0, 12.0, 1.35], [0.0; 3], 7);
+        block.clock = L::splat(clock);
+        Environment::reset(&race, &mut block, u16::MAX, &mut RaceTally::default());
+        block.target
+    };
+    let again = targets(100.0);
+    assert!(again.iter().all(|target| [6, 7].contains(target)), "{again:?}");
+    let anywhere = targets(race.config.horizon_steps as f32);
+    assert!(anywhere.iter().any(|target| ![6, 7].contains(target)), "{anywhere:?}");
 }
 
 /// Each factor stays in its range, fills it, and none follows another.

@@ -13,13 +13,14 @@ use racer::race::snapshot::Snapshot;
 use std::path::{Path, PathBuf};
 
 /// Ten iterations of 4096 steps.
-const SMALL: [&str; 7] = [
+const SMALL: [&str; 8] = [
     "track=square",
     "budget.steps=40000",
     "budget.snapshots=5",
     "ppo.environments=256",
     "ppo.rollout=16",
     "ppo.minibatches=4",
+    "ppo.average=0.9",
     "eval.agents=8",
 ];
 

@@ -70,6 +70,21 @@ fn snapshots_and_stopping() {
     assert_eq!(stopped.snapshots.last().unwrap().steps, stopped.steps);
 }
 
+/// A policy that is kept is the mean of the weights so far, where all of the iterations count.
+#[test]
+fn weights_are_averaged() {
+    let kept = |average: &str| {
+        let settings = [&SMALL[..], &["budget.snapshots=10", average]].concat();
+        run(2, Level::best(), &settings, &mut Log::default()).snapshots
+    };
+    let [each, mean] = ["ppo.average=0", "ppo.average=1"].map(kept);
+    assert_eq!((each.len(), mean.len()), (10, 10));
+    for (i, averaged) in mean.last().unwrap().network.parameters.iter().enumerate() {
+        let expected = each.iter().map(|taken| f64::from(taken.network.parameters[i])).sum::<f64>() / 10.0;
+        assert!((f64::from(*averaged) - expected).abs() < 1e-5, "parameter {i}: {averaged} for {expected}");
+    }
+}
+
 /// A million steps on the square more than double the gates passed in an episode.
 #[test]
 fn it_learns() {

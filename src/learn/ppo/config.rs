@@ -106,6 +106,9 @@ pub struct PpoConfig {
     pub penalty_full: f64,
     /// Logarithm of the action noise at the start, before the tanh.
     pub log_std_initial: f64,
+    /// Share of the iterations so far over which the weights of the policy that is kept are averaged; 0 keeps them as
+    /// the last iteration left them. The noise of single minibatches, which costs laps, averages out.
+    pub average: f64,
     /// "f32", or "bf16": factors of the optimiser's matrix products, which some processors multiply several times as
     /// fast. A policy is trained in singles but for that, and flies in singles.
     pub precision: ProductPrecision,
@@ -138,6 +141,11 @@ impl PpoConfig {
     /// Weight of the entropy at `share` of the budget.
     pub fn entropy_at(&self, share: f64) -> f64 {
         self.entropy * (1.0 + (self.entropy_end - 1.0) * share.clamp(0.0, 1.0))
+    }
+
+    /// How far the average of the weights moves to those of an iteration, of so many done.
+    pub fn renewed(&self, iterations: usize) -> f32 {
+        (1.0 / (self.average * iterations as f64).max(1.0)) as f32
     }
 
     /// Environment steps of one rollout.
@@ -204,6 +212,7 @@ impl Check for PpoConfig {
             ("gamma", self.gamma),
             ("lambda", self.lambda),
             ("penalty_full", self.penalty_full),
+            ("average", self.average),
             ("entropy_end", self.entropy_end),
         ] {
             Invalid::unless((0.0..=1.0).contains(&value), key, value, "0 to 1", "")?;

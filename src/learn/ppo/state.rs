@@ -17,6 +17,8 @@ pub struct TrainingState<S> {
     /// Times that it has gone back.
     pub setbacks: u32,
     pub network: Network<f32>,
+    /// The average of the last of them.
+    pub average: Network<f32>,
     pub adam: Adam<f32>,
     /// The rows of a rollout in the order of the last shuffle, from which the next begins.
     pub order: Vec<u32>,

@@ -163,7 +163,7 @@ fn take<E: Environment>(
     snapshots: &mut Vec<NetworkSnapshot>,
     observer: &mut dyn Observer<E>,
 ) {
-    let taken = NetworkSnapshot { network: training.network().clone(), steps: training.steps(), seconds };
+    let taken = NetworkSnapshot { network: training.average().clone(), steps: training.steps(), seconds };
     observer.snapshot(&taken);
     snapshots.push(taken);
 }

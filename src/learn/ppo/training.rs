@@ -39,6 +39,7 @@ pub struct Training<'a, E: Environment> {
     order: Vec<u32>,
     updater: Updater<f32>,
     network: Network<f32>,
+    average: Network<f32>,
     iterations: usize,
     setbacks: u32,
 }
@@ -66,6 +67,7 @@ impl<'a, E: Environment> Training<'a, E> {
             order: (0..(n * rollout.tile_rows) as u32).collect(),
             rollout,
             updater: Updater::new(&network),
+            average: network.clone(),
             network,
             iterations: 0,
             setbacks: 0,
@@ -80,6 +82,11 @@ impl<'a, E: Environment> Training<'a, E> {
     /// The networks as they are.
     pub fn network(&self) -> &Network<f32> {
         &self.network
+    }
+
+    /// What is taken of them: their weights, averaged over the last [`PpoConfig::average`] of the iterations.
+    pub fn average(&self) -> &Network<f32> {
+        &self.average
     }
 
     /// The optimiser's moments.
@@ -108,6 +115,7 @@ impl<'a, E: Environment> Training<'a, E> {
             snapshots,
             setbacks: self.setbacks,
             network: self.network.clone(),
+            average: self.average.clone(),
             adam: self.updater.adam.clone(),
             order: self.order.clone(),
             environments: self.tiles.iter().flat_map(Tile::saved).cloned().collect(),
@@ -122,6 +130,7 @@ impl<'a, E: Environment> Training<'a, E> {
         self.iterations = state.iterations;
         self.setbacks = state.setbacks;
         self.network = state.network.clone();
+        self.average = state.average.clone();
         self.updater.adam = state.adam.clone();
         self.order.copy_from_slice(&state.order);
         let (tiles, _) = state.environments.as_chunks::<TILE_BLOCKS>();
@@ -218,6 +227,7 @@ impl<'a, E: Environment> Training<'a, E> {
             losses
         });
         self.iterations += 1;
+        self.average.toward(&self.network, c.renewed(self.iterations));
         Learnt { losses, explained_variance, advantage_std, learning_rate }
     }
 }

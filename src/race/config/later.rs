@@ -11,7 +11,7 @@ struct Later {
     before: &'static str,
 }
 
-const LATER: [Later; 7] = [
+const LATER: [Later; 9] = [
     // Penalties were whole from the first step on.
     Later { key: "ppo.penalty_begin", before: "1.0" },
     Later { key: "ppo.penalty_full", before: "0.0" },
@@ -24,6 +24,10 @@ const LATER: [Later; 7] = [
     Later { key: "ppo.refine_after", before: "0.0" },
     // Nothing but `action_magnitude` held commands back.
     Later { key: "ppo.saturation", before: "0.0" },
+    // The weights of a policy were those of its iteration.
+    Later { key: "ppo.average", before: "0.0" },
+    // An episode started anywhere, however the one before it had ended.
+    Later { key: "env.reset.retry_share", before: "0.0" },
 ];
 
 /// Whether `key` came later.

@@ -22,7 +22,7 @@ impl Environment for Race {
     fn start(&self, first: u32) -> Self::Saved {
         let mut block = self.empty_block::<Portable<f32>>(first);
         for lane in 0..LANES {
-            self.restart(&mut block, lane);
+            self.restart(&mut block, lane, None);
             // The first episodes are of different ages, so that the horizon does not end them all at once.
             let mut rng = self.rng.sequence(RngStream::Reset, first + lane as u32, u32::MAX);
             block.clock.set(lane, rng.random_range(0..self.config.horizon_steps) as f32);
@@ -75,7 +75,8 @@ impl Environment for Race {
             tally.returns.push(block.gathered.get(lane));
             tally.episode_gates += f64::from(block.passed[lane]);
             tally.episode_steps += f64::from(block.clock.get(lane));
-            self.restart(block, lane);
+            let failed = block.clock.get(lane) < self.config.horizon_steps as f32;
+            self.restart(block, lane, failed.then_some(block.target[lane] as usize));
         }
     }
 
@@ -87,9 +88,15 @@ impl Environment for Race {
 }
 
 impl Race {
-    fn restart<L: Lane32>(&self, block: &mut Block<L>, lane: usize) {
+    /// Begins a new episode after one that `failed` at that gate, if it did.
+    fn restart<L: Lane32>(&self, block: &mut Block<L>, lane: usize, failed: Option<usize>) {
         let mut rng = self.rng.sequence(RngStream::Reset, block.first + lane as u32, block.step);
-        let start = reset::draw(self, &mut rng, StartPlace::Mixed, None);
+        let share = self.config.reset.retry_share;
+        let place = match failed {
+            Some(gate) if share > 0.0 && rng.random_bool(share) => StartPlace::Toward(gate),
+            _ => StartPlace::Mixed,
+        };
+        let start = reset::draw(self, &mut rng, place, None);
         block.begin(self, lane, &start);
     }
 }

@@ -1,6 +1,6 @@
 //! Where an episode starts: on the pad, or somewhere along the track at speed.
 
-use super::Race;
+use super::{LapPoint, Race};
 use crate::base::check::{Check, Invalid};
 use crate::base::rng::Sequence;
 use crate::model::dynamics::{Craft, Factors, State};
@@ -15,6 +15,9 @@ use serde::{Deserialize, Serialize};
 pub struct ResetConfig {
     /// Share of episodes that start on the pad, at rest, as a race does; the others start along the spline.
     pub pad_share: f64,
+    /// Share of the episodes that ended in a failure after which the next starts along the spline on the way to the gate
+    /// that was missed, from the one before the last on. What is hard is then flown most.
+    pub retry_share: f64,
     /// Speed along the spline, `[low, high]`, drawn evenly, m/s.
     pub speed_m_s: [f64; 2],
     /// Standard deviation of each coordinate about the spline, m.
@@ -29,7 +32,9 @@ pub struct ResetConfig {
 
 impl Check for ResetConfig {
     fn check(&self) -> Result<(), Invalid> {
-        Invalid::unless((0.0..=1.0).contains(&self.pad_share), "pad_share", self.pad_share, "a share, 0 to 1", "")?;
+        for (key, share) in [("pad_share", self.pad_share), ("retry_share", self.retry_share)] {
+            Invalid::unless((0.0..=1.0).contains(&share), key, share, "a share, 0 to 1", "")?;
+        }
         Invalid::unless_range("speed_m_s", self.speed_m_s, 0.0, "")?;
         Invalid::unless_not_negative("position_m", self.position_m, "")?;
         for (key, value) in
@@ -58,6 +63,8 @@ pub enum StartPlace {
     Spline,
     /// On the pad in the configured share of episodes, else along the spline.
     Mixed,
+    /// Along the spline, perturbed, where this gate or the one before it comes next.
+    Toward(usize),
 }
 
 /// Draws the start of an episode at `place`; the vehicle's parameters are `factors`, or drawn.
@@ -72,14 +79,14 @@ pub fn draw(race: &Race, rng: &mut Sequence, place: StartPlace, factors: Option<
     };
     let pad = match place {
         StartPlace::Pad => true,
-        StartPlace::Spline => false,
+        StartPlace::Spline | StartPlace::Toward(_) => false,
         StartPlace::Mixed => rng.random_bool(config.reset.pad_share),
     };
     let (state, target) = if pad {
         let yaw = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), race.start.heading_rad());
         (at_rest(race.start.position(), yaw, [0.0, 0.0, 0.0, -1.0], voltage), 0)
     } else {
-        on_spline(race, rng, voltage)
+        on_spline(race, rng, place, voltage)
     };
     if !nominal {
         // Last, so that vehicles with effects and without are given the same start.
@@ -88,9 +95,15 @@ pub fn draw(race: &Race, rng: &mut Sequence, place: StartPlace, factors: Option<
     Start { craft: Craft::new(&race.vehicle, &factors, race.dt, state), target }
 }
 
-fn on_spline(race: &Race, rng: &mut Sequence, voltage: f64) -> (State<f64>, usize) {
+fn on_spline(race: &Race, rng: &mut Sequence, place: StartPlace, voltage: f64) -> (State<f64>, usize) {
     let config = &race.config.reset;
-    let point = &race.lap[rng.random_range(0..race.lap.len())];
+    let before = |gate: usize| [gate, (gate + race.gates.len() - 1) % race.gates.len()];
+    let wanted = |point: &&LapPoint| match place {
+        StartPlace::Toward(gate) => before(gate).contains(&point.target),
+        _ => true,
+    };
+    let points = race.lap.iter().filter(wanted);
+    let point = points.clone().nth(rng.random_range(0..points.count().max(1))).unwrap_or(&race.lap[0]);
     let mut scatter = |sd: f64| Vector3::from_fn(|_, _| rng.sample::<f64, _>(StandardNormal)) * sd;
     let offset = scatter(config.position_m);
     let turned = UnitQuaternion::from_scaled_axis(scatter(config.direction_deg.to_radians())) * point.tangent;
