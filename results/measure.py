@@ -50,17 +50,22 @@ COLUMNS = ["minutes", "seed", "steps_million", "fixed_percent", "lap_s", "lap_p0
            "random_percent", "saturated_percent", "change_sq", "build"]
 
 
-# What else was tried: a name, the track, settings, million steps, seeds.
-BEFORE = ["ppo.gamma=0.995", "ppo.average=0"]
-LAST = ["ppo.average=0"]
-TRIED = [
-    ("gamma 0.995, weights as they are", "a2rl_s2", BEFORE, 18.6, 8),
-    ("gamma 0.995, weights as they are", "a2rl_s2", BEFORE, 37.2, 4),
-    ("gamma 0.995, weights as they are", "a2rl_s2", BEFORE, 186.0, 4),
-    ("gamma 0.99, weights as they are", "a2rl_s2", LAST, 18.6, 8),
-    ("gamma 0.99, weights as they are", "a2rl_s2", LAST, 37.2, 4),
-    ("gamma 0.99, weights as they are", "a2rl_s2", LAST, 186.0, 4),
-]
+# What was tried, as it stands in tried.csv, and the settings that make it of today's defaults.
+NARROW = ["env.gate_radius_begin=1", "env.gate_radius_full=0"]
+ONCE = [*NARROW, "env.reset.retry_share=0", "ppo.average=0"]
+SETTINGS = {
+    "today": [],
+    "gates as they are": NARROW,
+    "gates as they are, failures not tried again": [*NARROW, "env.reset.retry_share=0"],
+    "and weights as they are": ONCE,
+    "and gamma 0.995": [*ONCE, "ppo.gamma=0.995"],
+    "and gamma 0.985": [*ONCE, "ppo.gamma=0.985"],
+    "and 512 environments, 32 minibatches": [*ONCE, "ppo.environments=512", "ppo.minibatches=32"],
+    "and clip 0.3": [*ONCE, "ppo.clip=0.3"],
+    "and learning_rate 1.5e-3": [*ONCE, "ppo.learning_rate=1.5e-3"],
+    "and max_gradient_norm 100": [*ONCE, "ppo.max_gradient_norm=100"],
+    "and value_coefficient 0.05": [*ONCE, "ppo.value_coefficient=0.05"],
+}
 
 
 def build():

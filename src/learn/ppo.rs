@@ -51,8 +51,9 @@ pub trait Environment: Sync {
     fn step<L: Lane32>(&self, block: &mut Self::Block<L>, action: [L; 4], tally: &mut Self::Tally) -> Step<L>;
     /// Begins new episodes in `lanes` (bits).
     fn reset<L: Lane32>(&self, block: &mut Self::Block<L>, lanes: u16, tally: &mut Self::Tally);
-    /// The same, with the costs of how an action is chosen, not of where it leads, at `share` of their size.
-    fn with_penalties(&self, share: f64) -> Self
+    /// The same as it is after so many steps of training, with the costs of how an action is chosen, not of where it
+    /// leads, at a share of their size.
+    fn at(&self, steps: u64, penalties: f64) -> Self
     where
         Self: Sized;
 }

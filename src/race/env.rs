@@ -36,10 +36,24 @@ pub struct EnvConfig {
     pub gate_timeout_s: f64,
     /// Aperture radius of physical gates while training, m. Smaller than the track's, so that passing leaves a margin.
     pub gate_radius_m: f64,
+    /// Factor of all apertures when training begins, from where it falls to 1 linearly. Above 1, the way is learnt first
+    /// and how to hit a gate afterwards; at 1, a seed may never find through one of them.
+    pub gate_radius_begin: f64,
+    /// Million steps of training after which apertures are as they are.
+    pub gate_radius_full: f64,
     pub noise: NoiseConfig,
     pub reset: ResetConfig,
     pub randomize: RandomizeConfig,
     pub reward: RewardConfig,
+}
+
+impl EnvConfig {
+    /// Factor of all apertures after so many steps of training.
+    pub fn widened(&self, steps: u64) -> f64 {
+        let (begin, full) = (self.gate_radius_begin, 1e6 * self.gate_radius_full);
+        let done = if full > 0.0 { (steps as f64 / full).min(1.0) } else { 1.0 };
+        begin + (1.0 - begin) * done
+    }
 }
 
 impl Check for EnvConfig {
@@ -48,6 +62,9 @@ impl Check for EnvConfig {
         Invalid::unless((1..=1_000_000).contains(&steps), "horizon_steps", steps, "1 to 1000000", "")?;
         Invalid::unless_positive("gate_timeout_s", self.gate_timeout_s, "")?;
         Invalid::unless_positive("gate_radius_m", self.gate_radius_m, "a gate of no width cannot be passed")?;
+        let begin = self.gate_radius_begin;
+        Invalid::unless((1.0..=10.0).contains(&begin), "gate_radius_begin", begin, "1 to 10", "1 is no widening")?;
+        Invalid::unless_not_negative("gate_radius_full", self.gate_radius_full, "")?;
         self.noise.check().map_err(|invalid| invalid.within("noise"))?;
         self.reset.check().map_err(|invalid| invalid.within("reset"))?;
         self.randomize.check().map_err(|invalid| invalid.within("randomize"))?;

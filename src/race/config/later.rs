@@ -11,7 +11,7 @@ struct Later {
     before: &'static str,
 }
 
-const LATER: [Later; 9] = [
+const LATER: [Later; 11] = [
     // Penalties were whole from the first step on.
     Later { key: "ppo.penalty_begin", before: "1.0" },
     Later { key: "ppo.penalty_full", before: "0.0" },
@@ -28,6 +28,9 @@ const LATER: [Later; 9] = [
     Later { key: "ppo.average", before: "0.0" },
     // An episode started anywhere, however the one before it had ended.
     Later { key: "env.reset.retry_share", before: "0.0" },
+    // Apertures were the same from the first step on.
+    Later { key: "env.gate_radius_begin", before: "1.0" },
+    Later { key: "env.gate_radius_full", before: "0.0" },
 ];
 
 /// Whether `key` came later.

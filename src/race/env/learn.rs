@@ -80,9 +80,11 @@ impl Environment for Race {
         }
     }
 
-    fn with_penalties(&self, share: f64) -> Self {
+    fn at(&self, steps: u64, penalties: f64) -> Self {
         let mut race = self.clone();
-        race.config.reward.action_change *= share;
+        let wide = self.config.widened(steps) as f32;
+        race.gates.iter_mut().for_each(|gate| gate.radius *= wide);
+        race.config.reward.action_change *= penalties;
         race
     }
 }
