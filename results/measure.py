@@ -50,21 +50,37 @@ COLUMNS = ["minutes", "seed", "steps_million", "fixed_percent", "lap_s", "lap_p0
            "random_percent", "saturated_percent", "change_sq", "build"]
 
 
-# What was tried, as it stands in tried.csv, and the settings that make it of today's defaults.
+# What was tried for short budgets: its name in tried.csv, what makes it of today's defaults, and for each track and
+# million steps how many seeds.
 NARROW = ["env.gate_radius_begin=1", "env.gate_radius_full=0"]
-ONCE = [*NARROW, "env.reset.retry_share=0", "ppo.average=0"]
-SETTINGS = {
-    "today": [],
-    "gates as they are": NARROW,
-    "gates as they are, failures not tried again": [*NARROW, "env.reset.retry_share=0"],
-    "and weights as they are": ONCE,
-    "and gamma 0.995": [*ONCE, "ppo.gamma=0.995"],
-    "and gamma 0.985": [*ONCE, "ppo.gamma=0.985"],
-    "and 512 environments, 32 minibatches": [*ONCE, "ppo.environments=512", "ppo.minibatches=32"],
-    "and clip 0.3": [*ONCE, "ppo.clip=0.3"],
-    "and learning_rate 1.5e-3": [*ONCE, "ppo.learning_rate=1.5e-3"],
-    "and max_gradient_norm 100": [*ONCE, "ppo.max_gradient_norm=100"],
-    "and value_coefficient 0.05": [*ONCE, "ppo.value_coefficient=0.05"],
+AVERAGED = [*NARROW, "env.reset.retry_share=0"]
+OLDER = [*AVERAGED, "ppo.average=0"]
+S2, S1, SPLIT_S = "a2rl_s2", "a2rl_s1", "uzh_split_s"
+EIGHT = {(S2, 18.6): 8}
+TRIED = {
+    "gamma 0.995 (the default before)": (
+        [*OLDER, "ppo.gamma=0.995"], {**EIGHT, (S2, 37.2): 4, (S2, 186.0): 4, (SPLIT_S, 18.6): 2, (S1, 18.6): 2}),
+    "gamma 0.99": (OLDER, {**EIGHT, (S2, 37.2): 4, (S2, 186.0): 4, (SPLIT_S, 18.6): 2, (S1, 18.6): 2}),
+    "gamma 0.985": ([*OLDER, "ppo.gamma=0.985"], EIGHT),
+    "gamma 0.99, 512 environments, 32 minibatches": ([*OLDER, "ppo.environments=512", "ppo.minibatches=32"], EIGHT),
+    "gamma 0.99, clip 0.3": ([*OLDER, "ppo.clip=0.3"], {(S2, 18.6): 4}),
+    "gamma 0.99, learning_rate 1.5e-3": ([*OLDER, "ppo.learning_rate=1.5e-3"], EIGHT),
+    "gamma 0.99, max_gradient_norm 100": ([*OLDER, "ppo.max_gradient_norm=100"], EIGHT),
+    "gamma 0.99, value_coefficient 0.05": ([*OLDER, "ppo.value_coefficient=0.05"], EIGHT),
+    "gamma 0.99, lambda 0.9": ([*OLDER, "ppo.lambda=0.9"], EIGHT),
+    "gamma 0.99, time 0.05": ([*OLDER, "env.reward.time=0.05"], {(S2, 18.6): 4}),
+    "average": (AVERAGED, EIGHT),
+    "average, learning_rate_final 3e-4": ([*AVERAGED, "ppo.learning_rate_final=3e-4"], {(S2, 18.6): 4}),
+    "average, retry": (NARROW, {**EIGHT, (S2, 14.4): 8}),
+    "average, retry 0.8": ([*NARROW, "env.reset.retry_share=0.8"], EIGHT),
+    "average, retry, value_coefficient 0.05": ([*NARROW, "ppo.value_coefficient=0.05"], {(S2, 14.4): 6}),
+    "average, retry, wide to 4.3 M": (["env.gate_radius_full=4.32"], {(S2, 14.4): 8}),
+    "average, retry, wide 3 to 4.3 M": (["env.gate_radius_full=4.32", "env.gate_radius_begin=3"], {(S2, 14.4): 6}),
+    "average, retry, wide to 4.3 M, gamma 0.985": (["env.gate_radius_full=4.32", "ppo.gamma=0.985"], {(S2, 14.4): 8}),
+    "average, retry, wide to 4.3 M, time 0.05": (
+        ["env.gate_radius_full=4.32", "env.reward.time=0.05"], {(S2, 14.4): 4}),
+    "average, retry, wide to 5 M (the default)": (
+        [], {**EIGHT, (S2, 37.2): 4, (S2, 186.0): 4, (SPLIT_S, 18.6): 2, (S1, 18.6): 2}),
 }
 
 
@@ -111,21 +127,52 @@ def training(racer, only, threads):
                 csv.writer(file, lineterminator="\n").writerow(trained(minutes, seed, run))
 
 
+def tried(racer, only, threads):
+    """Half a minute and more with other settings; `only` is the name of one of them."""
+    path = HERE / "tried.csv"
+    done = {(r["track"], r["setting"], r["steps_million"], r["seed"]) for r in csv.DictReader(path.open())}
+    wanted = {name: of for name, of in TRIED.items() if only in (None, name)}
+    runs = [(name, settings, *where, str(seed)) for name, (settings, places) in wanted.items()
+            for where, seeds in places.items() for seed in range(1, seeds + 1)]
+    for place, (name, settings, track, million, seed) in enumerate(runs):
+        if (track, name, f"{million:.1f}", seed) in done:
+            continue
+        run = RUNS / f"tried-{place}"
+        sets = [part for setting in [f"track={track}", *settings] for part in ("--set", setting)]
+        command = [racer, "train", "--config", "a2rl", "--steps", f"{million * 1e6:.0f}", "--seed", seed, "--out", run]
+        subprocess.run([*command, *sets, *(["--threads", threads] if threads else [])], cwd=ROOT, check=True)
+        with path.open("a", newline="") as file:
+            csv.writer(file, lineterminator="\n").writerow(setting_row(track, name, seed, million, run))
+
+
+def setting_row(track, name, seed, million, run):
+    """The row of a finished training with other settings."""
+    best = evaluated(run)
+    fixed = best["fixed"]
+    lap = f"{fixed['lap_time_s']['median']:.2f}" if fixed["lap_time_s"] else ""
+    shares = [fixed["lap_completion"], best["random"]["lap_completion"], fixed["saturated_share"]]
+    laps, random, saturated = map(percent, shares)
+    return [track, name, seed, f"{million:.1f}", laps, lap, random, saturated, build()]
+
+
+TRAINED = {"training": training, "tried": tried}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--with", dest="given", nargs="*", default=[], metavar="KEY=VALUE",
                         help="betaflight=PROGRAM, ardupilot=PROGRAM, logs='LOG...'; "
-                        "for training: only=MINUTES:SEED,..., threads=N")
-    parser.add_argument("--racer", type=pathlib.Path, default=ROOT / "target/release/racer", help="for training")
+                        "for training: only=MINUTES:SEED,..., threads=N; for tried: only=NAME, threads=N")
+    parser.add_argument("--racer", type=pathlib.Path, default=ROOT / "target/release/racer", help="for trainings")
     options = parser.parse_args()
     given = dict(pair.split("=", 1) for pair in options.given)
-    unknown = [name for name in options.names if name not in COMMANDS and name != "training"]
+    unknown = [name for name in options.names if name not in {**COMMANDS, **TRAINED}]
     if unknown:
-        parser.error(f"no measurement {', '.join(unknown)}; there are training, {', '.join(COMMANDS)}")
+        parser.error(f"no measurement {', '.join(unknown)}; there are {', '.join([*TRAINED, *COMMANDS])}")
     for name in options.names:
-        if name == "training":
-            training(options.racer, given.get("only"), given.get("threads"))
+        if name in TRAINED:
+            TRAINED[name](options.racer, given.get("only"), given.get("threads"))
             continue
         needs, _, command = COMMANDS[name]
         missing = [key for key in needs if key not in given]
@@ -135,7 +182,8 @@ def main():
         print(f"$ {command}", flush=True)
         subprocess.run(shlex.split(command), cwd=ROOT, check=True)
     if not options.names:
-        print("training     2 h, each row at once  results/training.csv")
+        print("training     3 h, each row at once  results/training.csv")
+        print("tried        6 h, each row at once  results/tried.csv")
         for name, (needs, time, command) in COMMANDS.items():
             print(f"{name:<12} {time:<8} {'needs ' + ', '.join(needs) if needs else '':<18} {command}")
 

@@ -102,10 +102,10 @@ def refinement():
     )
 
 
-def discount():
-    """What a discount and other settings of a short budget bring."""
+def tried():
+    """What other settings of short budgets bring."""
     settings = {}
-    for r in rows("discount"):
+    for r in rows("tried"):
         settings.setdefault((r["track"], r["setting"], r["steps_million"]), []).append(r)
     body = []
     for (track, setting, steps), seeds in settings.items():
@@ -219,7 +219,7 @@ def precision():
     return table(head, body)
 
 
-TABLES = [training, budgets, refinement, discount, loop, rotorpy, against, plan, blackbox, precision]
+TABLES = [training, budgets, refinement, tried, loop, rotorpy, against, plan, blackbox, precision]
 MADE = {f.__name__: f for f in TABLES}
 
 
