@@ -51,9 +51,9 @@ pub trait Environment: Sync {
     fn step<L: Lane32>(&self, block: &mut Self::Block<L>, action: [L; 4], tally: &mut Self::Tally) -> Step<L>;
     /// Begins new episodes in `lanes` (bits).
     fn reset<L: Lane32>(&self, block: &mut Self::Block<L>, lanes: u16, tally: &mut Self::Tally);
-    /// The same as it is after so many steps of training, with the costs of how an action is chosen, not of where it
-    /// leads, at a share of their size.
-    fn at(&self, steps: u64, penalties: f64) -> Self
+    /// The same as it is after so many steps of training, `share` of its budget, with the costs of how an action is
+    /// chosen, not of where it leads, at the share `penalties` of their size.
+    fn at(&self, steps: u64, share: f64, penalties: f64) -> Self
     where
         Self: Sized;
 }

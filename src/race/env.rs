@@ -36,10 +36,10 @@ pub struct EnvConfig {
     pub gate_timeout_s: f64,
     /// Aperture radius of physical gates while training, m. Smaller than the track's, so that passing leaves a margin.
     pub gate_radius_m: f64,
-    /// Factor of all apertures when training begins, from where it falls to 1 linearly. Above 1, the way is learnt first
-    /// and how to hit a gate afterwards; at 1, a seed may never find through one of them.
+    /// Factor of all apertures when training begins, from where it falls to 1 linearly. Above 1, the way is learnt
+    /// first and how to hit a gate afterwards; at 1, a seed may never find through one of them.
     pub gate_radius_begin: f64,
-    /// Million steps of training after which apertures are as they are.
+    /// Million steps of training after which apertures are as they are; at the latest after half of the budget.
     pub gate_radius_full: f64,
     pub noise: NoiseConfig,
     pub reset: ResetConfig,
@@ -48,10 +48,10 @@ pub struct EnvConfig {
 }
 
 impl EnvConfig {
-    /// Factor of all apertures after so many steps of training.
-    pub fn widened(&self, steps: u64) -> f64 {
+    /// Factor of all apertures after so many steps of training, `share` of its budget.
+    pub fn widened(&self, steps: u64, share: f64) -> f64 {
         let (begin, full) = (self.gate_radius_begin, 1e6 * self.gate_radius_full);
-        let done = if full > 0.0 { (steps as f64 / full).min(1.0) } else { 1.0 };
+        let done = if full > 0.0 { (steps as f64 / full).max(2.0 * share).min(1.0) } else { 1.0 };
         begin + (1.0 - begin) * done
     }
 }

@@ -54,8 +54,8 @@ fn the_configuration_of_a_run_says_what_it_said() {
     // Its entropy was that of the Gaussian before the tanh, without a key to say so, and the default another weight.
     let entropy = ["ppo.entropy=3e-3", "ppo.entropy_squashed=false", "ppo.entropy_end=1.0"];
     // It looked further ahead, its step size knew the share of the budget alone, nothing pulled commands off the stops,
-    // the weights were kept as the last iteration left them, fewer episodes started on the pad, what failed was not tried again, and apertures were the same
-    // from the first step on.
+    // the weights were kept as the last iteration left them, fewer episodes started on the pad, what failed was not
+    // tried again, and apertures were the same from the first step on.
     let later = ["ppo.gamma=0.995", "ppo.refine_after=0.0", "ppo.saturation=0.0", "ppo.average=0.0"];
     let starts = [
         "env.reset.pad_share=0.15",

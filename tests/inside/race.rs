@@ -187,20 +187,20 @@ fn a_failure_is_tried_again() {
     assert!(anywhere.iter().any(|target| ![6, 7].contains(target)), "{anywhere:?}");
 }
 
-/// Apertures are twice as wide when training begins, and as they are after five million steps.
+/// Apertures are twice as wide when training begins, and as they are after five million steps or half of the budget.
 #[test]
 fn gates_are_wide_at_first() {
     let (race, _) = race("");
-    let radius = |steps: u64| Environment::at(&race, steps, 1.0).gates[0].radius;
-    let found = [0, 2_500_000, 5_000_000, 1_000_000_000].map(radius);
-    assert!(found.iter().zip([1.2, 0.9, 0.6, 0.6]).all(|(r, expected)| (r - expected).abs() < 1e-6), "{found:?}");
+    let radius = |(steps, share)| Environment::at(&race, steps, share, 1.0).gates[0].radius;
+    let found = [(0, 0.0), (2_500_000, 0.1), (5_000_000, 0.2), (1_000_000_000, 1.0), (50_000, 0.25)].map(radius);
+    assert!(found.iter().zip([1.2, 0.9, 0.6, 0.6, 0.9]).all(|(r, expected)| (r - expected).abs() < 1e-6), "{found:?}");
     let outside = |race: &Race| {
         let mut block = block(race, [12.6, 2.9, 1.35], [-20.0, 0.0, 0.0], 0);
         let outcome = block.step(race, hover(race));
         (outcome.passed, outcome.terminated)
     };
-    assert_eq!(outside(&race.at(0, 1.0)), (u32::from(u16::MAX), 0));
-    assert_eq!(outside(&race.at(5_000_000, 1.0)), (0, u32::from(u16::MAX)));
+    assert_eq!(outside(&race.at(0, 0.0, 1.0)), (u32::from(u16::MAX), 0));
+    assert_eq!(outside(&race.at(5_000_000, 0.2, 1.0)), (0, u32::from(u16::MAX)));
 }
 
 /// Each factor stays in its range, fills it, and none follows another.

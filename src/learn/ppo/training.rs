@@ -208,7 +208,7 @@ impl<'a, E: Environment> Training<'a, E> {
     /// Rollout, advantages and all epochs of one iteration at `share` of the budget.
     pub fn iterate(&mut self, share: f64) -> Learnt {
         let c = self.config;
-        self.collect(&self.environment.at(self.steps(), c.penalty(share)));
+        self.collect(&self.environment.at(self.steps(), share, c.penalty(share)));
         let (explained_variance, advantage_std) = self.advantages();
         let hyper = self.hyper(share);
         let learning_rate = hyper.learning_rate;

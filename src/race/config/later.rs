@@ -75,9 +75,11 @@ mod tests {
         let mut whole: Table = Config::load("a2rl", &[]).unwrap().to_toml().parse().unwrap();
         let keys = whole.clone();
         for Later { key, .. } in LATER {
-            let (part, name) = key.split_once('.').unwrap();
-            assert!(keys[part].get(name).is_some(), "{key}");
-            whole[part].as_table_mut().unwrap().remove(name);
+            let (tables, name) = key.rsplit_once('.').unwrap();
+            let within = tables.split('.').fold(&keys, |table, part| table[part].as_table().unwrap());
+            assert!(within.contains_key(name), "{key}");
+            let without = tables.split('.').fold(&mut whole, |table, part| table[part].as_table_mut().unwrap());
+            without.remove(name);
         }
         let mut part = whole["ppo"].as_table().unwrap().clone();
         complete(&mut part, Some("ppo"));

@@ -80,9 +80,9 @@ impl Environment for Race {
         }
     }
 
-    fn at(&self, steps: u64, penalties: f64) -> Self {
+    fn at(&self, steps: u64, share: f64, penalties: f64) -> Self {
         let mut race = self.clone();
-        let wide = self.config.widened(steps) as f32;
+        let wide = self.config.widened(steps, share) as f32;
         race.gates.iter_mut().for_each(|gate| gate.radius *= wide);
         race.config.reward.action_change *= penalties;
         race

@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 pub struct ResetConfig {
     /// Share of episodes that start on the pad, at rest, as a race does; the others start along the spline.
     pub pad_share: f64,
-    /// Share of the episodes that ended in a failure after which the next starts along the spline on the way to the gate
-    /// that was missed, from the one before the last on. What is hard is then flown most.
+    /// Share of failures after which the next episode starts along the spline on the way to the gate that was missed,
+    /// or to the one before it. What is hard is then flown most.
     pub retry_share: f64,
     /// Speed along the spline, `[low, high]`, drawn evenly, m/s.
     pub speed_m_s: [f64; 2],
