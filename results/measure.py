@@ -71,6 +71,7 @@ TRIED = {
     "gamma 0.99, value_coefficient 0.05": ([*OLDER, "ppo.value_coefficient=0.05"], EIGHT),
     "gamma 0.99, lambda 0.9": ([*OLDER, "ppo.lambda=0.9"], EIGHT),
     "gamma 0.99, time 0.05": ([*OLDER, "env.reward.time=0.05"], {(S2, 18.6): 4}),
+    "gamma 0.99, resets at up to 20 m/s": ([*OLDER, "env.reset.speed_m_s=[0.0,20.0]"], {(S2, 18.6): 2}),
     "average": (AVERAGED, EIGHT),
     "average, learning_rate_final 3e-4": ([*AVERAGED, "ppo.learning_rate_final=3e-4"], {(S2, 18.6): 4}),
     "average, retry": (NARROW, {**EIGHT, (S2, 14.4): 8}),
