@@ -82,6 +82,8 @@ pub struct Race {
     pub gates: Vec<GateFrame<f32>>,
     /// Points along the lap, equally far apart, with the gate that comes next.
     pub lap: Vec<LapPoint>,
+    /// For each gate, indices of the points after which it or the one before it comes next: a reset looks here.
+    pub approaches: Vec<Vec<usize>>,
     /// Lower and upper corner of the flight volume, m.
     pub volume: [[f64; 3]; 2],
     /// Offset and scale of the observed voltage: those of the vehicle that the policy was trained with.
@@ -153,14 +155,20 @@ impl Race {
     /// of the configuration.
     pub fn new(config: &EnvConfig, track: &Track, vehicle: &Vehicle, seed: u64) -> Self {
         let gates = gates::frames(track, Some(config.gate_radius_m));
-        let lap = track
+        let lap: Vec<LapPoint> = track
             .reset_spline()
             .samples(LAP_POINTS)
             .into_iter()
             .map(|s| LapPoint { position: s.position, tangent: s.tangent, target: track.gate_after(s.next) })
             .collect();
+        let n = gates.len();
+        let approach = |gate: usize| {
+            let leads = |i: &usize| [(gate + n - 1) % n, gate].contains(&lap[*i].target);
+            (0..lap.len()).filter(leads).collect()
+        };
         Race {
             config: config.clone(),
+            approaches: (0..n).map(approach).collect(),
             start: track.start,
             gates,
             lap,

@@ -1,6 +1,6 @@
 //! Where an episode starts: on the pad, or somewhere along the track at speed.
 
-use super::{LapPoint, Race};
+use super::Race;
 use crate::base::check::{Check, Invalid};
 use crate::base::rng::Sequence;
 use crate::model::dynamics::{Craft, Factors, State};
@@ -97,13 +97,13 @@ pub fn draw(race: &Race, rng: &mut Sequence, place: StartPlace, factors: Option<
 
 fn on_spline(race: &Race, rng: &mut Sequence, place: StartPlace, voltage: f64) -> (State<f64>, usize) {
     let config = &race.config.reset;
-    let before = |gate: usize| [gate, (gate + race.gates.len() - 1) % race.gates.len()];
-    let wanted = |point: &&LapPoint| match place {
-        StartPlace::Toward(gate) => before(gate).contains(&point.target),
-        _ => true,
+    let point = match place {
+        StartPlace::Toward(gate) => {
+            let points = &race.approaches[gate];
+            &race.lap[points.get(rng.random_range(0..points.len().max(1))).copied().unwrap_or(0)]
+        }
+        _ => &race.lap[rng.random_range(0..race.lap.len())],
     };
-    let points = race.lap.iter().filter(wanted);
-    let point = points.clone().nth(rng.random_range(0..points.count().max(1))).unwrap_or(&race.lap[0]);
     let mut scatter = |sd: f64| Vector3::from_fn(|_, _| rng.sample::<f64, _>(StandardNormal)) * sd;
     let offset = scatter(config.position_m);
     let turned = UnitQuaternion::from_scaled_axis(scatter(config.direction_deg.to_radians())) * point.tangent;
