@@ -53,12 +53,13 @@ fn passages() -> Vec<Passage> {
     };
     let actuator: fn(&[f64], &mut [f64]) = |k, v| {
         let (inertia, slew) = (three(&v[5..]), three(&v[8..]));
-        let mut s = Actuator { tau: four(v), tau_down: v[4], inertia, slew, missing_v: v[11] };
+        let mut s = Actuator { tau: four(v), tau_down: v[4], inertia, slew, slower: v[11], missing_v: v[12] };
         effects::actuator(&values(k), &mut s);
         v[..4].copy_from_slice(&s.tau);
         v[4] = s.tau_down;
         v[5..8].copy_from_slice(&s.inertia);
         v[8..11].copy_from_slice(&s.slew);
+        v[11] = s.slower;
     };
     let body_rates: fn(&[f64], &mut [f64]) = |k, v| {
         let mut s = Rates { rates: three(v), throttle: v[3] };
@@ -108,7 +109,7 @@ fn passages() -> Vec<Passage> {
             vec![own(RateCommand, 3), own(ThrustCommand, 1), input(ThrustCommand, 1), input(RateCommand, 3), fixed(7)],
             setpoint,
         ),
-        (vec![own(RateCommand, 3), own(ThrustCommand, 2), own(RateCommand, 6), fixed(1)], actuator),
+        (vec![own(RateCommand, 3), own(ThrustCommand, 2), own(RateCommand, 7), fixed(1)], actuator),
         (vec![own(BodyRates, 3), input(ThrustCommand, 1)], body_rates),
         (vec![input(ThrustCommand, 1), fixed(1), input(Voltage, 1), own(Voltage, 2)], battery),
         (

@@ -302,6 +302,14 @@ fn rates_follow_the_equations() {
     let p = one("response_voltage", &[0.2]);
     let s = held(&p, [0.0; 4], [1.0, 0.0, 0.0, 0.0], 23.0, 2);
     close(s.state.command[0], 1.0 - (-0.02 / (1.2 * tau[0])).exp(), 1e-4, "response at 1 V less");
+    let limited = with(p.clone(), "rate_slew_limit", &[0.01]);
+    let s = held(&limited, [0.0; 4], [1.0, 0.0, 0.0, 0.0], 23.0, 2);
+    close(s.state.command[0], 0.02 * 100.0 / 1.2 / max[0], 1e-4, "largest angular acceleration at 1 V less");
+    let swings = with(p, "rate_second_order", &[4e-4]);
+    let mut slower = with(seed_class(), "rate_second_order", &[1.2 * 4e-4]);
+    slower.time_constant_s.roll *= 1.2;
+    let [s, want] = [swings, slower].map(|v| held(&v, [0.0; 4], [1.0, 0.0, 0.0, 0.0], 23.0, 2).state.command[0]);
+    close(s, want, 1e-4, "swing at 1 V less");
 
     let p = one("thrust_asymmetric_lag", &[0.0125]);
     let up = held(&p, [0.0; 4], [0.0, 0.0, 0.0, 1.0], 23.0, 2);

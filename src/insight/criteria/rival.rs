@@ -7,8 +7,13 @@ criteria! {
 
     /// Standard deviations of their difference within which two causes are a tie.
     TIE_DEVIATIONS = 2.5, Theory("one in eighty by chance");
+    /// Likeness of what two rivals add to the prediction from which on they may be one cause.
+    ONE_LIKENESS = 0.7, Assumed("half of what either explains is the other's");
     /// Share of its gain that a rival keeps at most, once the best is in, to compete with it.
     RIVAL_KEEPS = 0.3, Assumed(UNRECORDED);
+    /// Shift of the rates over a flight beyond which no response slows, s.
+    SLOWED_MOST_S = 0.03, Assumed("half of a slow vehicle's response: with two thirds of its voltage it takes twice as \
+        long");
     /// Difference of the delays after commands and after the odometry that is none, s.
     SAME_DELAY_S = 6e-4, Assumed("a third of the IMU's period at 500 Hz");
     /// The same as a share of the delay.

@@ -8,6 +8,9 @@ criteria! {
     /// Standard deviations (over stretches of time) by which an effect has to lower the whitened squares of unseen
     /// flight.
     PAYS_DEVIATIONS = 2.0, Theory("one in forty by chance; four stretches that agree");
+    /// Difference of a skew as fitted from what it is followed at through the flight, as a share of that, up to which
+    /// both are one.
+    SAME_SKEW_SHARE = 0.5, Assumed("windows of six seconds tell it to a few percent of what matters");
     /// Standard deviations by which unseen flight has to be predicted worse in a channel to be worse.
     WORSE_DEVIATIONS = 2.5, Theory("one in 160 by chance, of seven channels");
     /// Rise of a channel's error on unseen flight, as a share, that is worse.

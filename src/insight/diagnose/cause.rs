@@ -99,7 +99,9 @@ impl<'a> Moved<'a> {
         let covariance = Grams::pick(&self.fitted.covariance, &self.main, &self.main);
         let sd = ((weight.transpose() * covariance * &weight)[(0, 0)]).max(0.0).sqrt() / norm;
         let least = MATERIAL_SIZE.get() * card.parameters[0].typical[0];
-        let sure = size.abs() > least && size.abs() > MOVED_DEVIATIONS.get() * sd;
+        // Of the other sign it would be no effect: no thrust comes back with time.
+        let possible = size >= card.parameters[0].low;
+        let sure = possible && size.abs() > least && size.abs() > MOVED_DEVIATIONS.get() * sd;
         sure.then_some(Account { card, share, size })
     }
 

@@ -6,9 +6,10 @@ mod kinematic;
 
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
-use super::unseen;
-use crate::insight::criteria::unseen::PAYS_DEVIATIONS;
-use crate::model::effects::{self, Card, Role};
+use super::numbers::span;
+use super::{skew, unseen};
+use crate::insight::criteria::unseen::{PAYS_DEVIATIONS, SAME_SKEW_SHARE};
+use crate::model::effects::{self, Card, Role, are_rivals};
 
 /// Makes findings that are in doubt no more than suspected.
 pub fn all(fitted: &FittedSelection, findings: &mut [Finding]) {
@@ -27,7 +28,15 @@ fn named(fitted: &FittedSelection, findings: &[Finding]) -> Vec<(usize, &'static
 
 fn cancelling(fitted: &FittedSelection, findings: &mut [Finding]) {
     let cards = named(fitted, findings);
-    for [a, b] in cancel::pairs(fitted, &cards.iter().map(|(_, card)| *card).collect::<Vec<_>>()) {
+    let parts = cancel::parts(fitted, &cards.iter().map(|(_, card)| *card).collect::<Vec<_>>());
+    // Of rivals that write the same and point the same way, one has the name: the form of the cause lies between.
+    for [larger, smaller] in parts.alike().map(|pair| pair.map(|i| cards[i])) {
+        if are_rivals(larger.1, smaller.1) && larger.1.writes == smaller.1.writes {
+            findings[smaller.0].suspect(format!("it is much like {}: they may be one cause", larger.1.name));
+            findings[larger.0].or(smaller.1.id);
+        }
+    }
+    for [a, b] in parts.cancelling() {
         let (a, b) = (cards[a], cards[b]);
         for ((i, _), (_, other)) in [(a, b), (b, a)] {
             findings[i].suspect(format!("it and {} cancel each other: this flight cannot tell either", other.name));
@@ -45,9 +54,10 @@ fn unshown(fitted: &FittedSelection, findings: &mut [Finding]) {
 }
 
 fn unpaid(fitted: &FittedSelection, findings: &mut [Finding]) {
-    // Lost commands are counted, not fitted.
+    // Lost commands are counted, not fitted; clocks that run apart are followed from one stretch of time to the next, for
+    // no step of a linear fit reaches them.
     let mut cards = named(fitted, findings);
-    cards.retain(|(_, card)| card.role != Role::CommandsLost);
+    cards.retain(|(_, card)| card.role != Role::CommandsLost && !followed(fitted, card));
     let places: Vec<Vec<usize>> = cards.iter().map(|(_, card)| fitted.places(card)).collect();
     for ((i, _), deviations) in
         cards.into_iter().zip(unseen::pays(fitted, &unseen::parts(fitted.problem), &places, f64::INFINITY))
@@ -56,4 +66,15 @@ fn unpaid(fitted: &FittedSelection, findings: &mut [Finding]) {
             findings[i].suspect("on flight that was not used for fitting it does not pay".into());
         }
     }
+}
+
+/// Whether `card` is a skew of the clocks that shifts the rates from one stretch of time to the next by itself.
+fn followed(fitted: &FittedSelection, card: &Card) -> bool {
+    let problem = fitted.problem;
+    let seen = || {
+        let state = problem.predict(&problem.model.base);
+        skew::estimate(problem, &state, &problem.residuals(&state))
+    };
+    let size = fitted.point().x[span(card).start];
+    card.role == Role::ClockFast && seen().is_some_and(|seen| (seen / size - 1.0).abs() < SAME_SKEW_SHARE.get())
 }

@@ -267,6 +267,14 @@ impl Finding {
         (self.status, self.why) = (Status::Suspected, Some(why));
     }
 
+    /// It may as well be the effect `id`.
+    pub fn or(&mut self, id: &'static str) {
+        self.members.push(id);
+        if self.status == Status::Named {
+            self.status = Status::NamedSet;
+        }
+    }
+
     /// Shares of the channels that are worth a word, the largest first.
     pub fn mentioned(&self) -> Vec<(&'static str, f64)> {
         let mut shares: Vec<_> =

@@ -61,11 +61,25 @@ impl Judgement {
         for finding in self.findings.iter_mut().filter(|f| placed && f.has(Role::UniformWind)) {
             finding.suspect("the wind is not the same everywhere".into());
         }
+        for finding in self.findings.iter_mut().filter(|f| f.status == Status::Named) {
+            open(finding, &all, &self.unexplained);
+        }
         // A move of the base explains nothing where its channel still has structure.
         let open = self.unexplained.iter().any(|s| s.channel == "specific force z");
         for finding in self.findings.iter_mut().filter(|f| open && f.explained.contains_key(MOVES)) {
             finding.suspect("structure remains in specific force z".into());
         }
+    }
+}
+
+/// Where structure is left in what a finding explains most of, its form is not quite right, and it may be a rival that
+/// writes the same, of which the form is not either.
+fn open(finding: &mut Finding, all: &[Finding], unexplained: &[Structure]) {
+    let Some(card) = effects::card(finding.effect) else { return };
+    let found = |id: &str| all.iter().any(|f| f.effect == id);
+    let same = |id: &&str| effects::card(id).is_some_and(|rival| rival.writes == card.writes);
+    if unexplained.iter().any(|s| s.channel == finding.channel) {
+        card.rivals.iter().copied().filter(same).filter(|id| !found(id)).for_each(|id| finding.or(id));
     }
 }
 

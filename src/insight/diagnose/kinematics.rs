@@ -1,5 +1,6 @@
 //! What the IMU alone says of a flight: what it integrates to between two looks of the odometry.
 
+use super::bends;
 use super::imu_seen::{ShiftedImu, fine_axes, lagged};
 use super::model::Model;
 use super::record::FlightRecord;
@@ -8,13 +9,14 @@ use crate::model::attitude::{Quaternion, body_axes, compose, in_world, normalize
 use crate::model::dynamics::extended;
 use crate::model::effects::{Role, Sensed, SensorErrors};
 
-/// By how much the gyro's and the accelerometer's samples are late to the odometry's, s.
+/// By how much the gyro's and the accelerometer's samples are late to the attitude's and the velocity's, s.
 pub fn offsets(model: &Model, record: &FlightRecord, x: &[f64]) -> [f64; 2] {
     // A gyro that is late was not what the odometry's clock was to be moved to.
     let late = model.acting(x, Role::GyroLate);
     let moved = if late == 0.0 { 0.0 } else { record.moved };
     let odometry = model.acting(x, Role::OdometryLate);
-    [late - moved - odometry, -moved - odometry]
+    let delay = model.acting(x, Role::VelocityLag) * x[bends::VELOCITY];
+    [late - moved - odometry, -moved - odometry - delay]
 }
 
 /// What the IMU, corrected, integrates to over each window: the turn (rotation vector) and the change of velocity (less
@@ -33,7 +35,7 @@ pub fn integrate(
     }
     let k = model.sensors(x);
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
-    let tau = model.acting(x, Role::VelocityLag);
+    let tau = model.acting(x, Role::VelocityLag) * (1.0 - x[bends::VELOCITY]);
     let fine = &record.fine;
     let mut corrected: Vec<[f64; 6]> = Vec::with_capacity(imu.gyro.len());
     for i in 0..imu.gyro.len() {

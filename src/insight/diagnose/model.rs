@@ -1,9 +1,7 @@
 //! The model of the flights at any values of its numbers: the vehicle with every effect.
 
 use super::bends;
-use super::numbers::{
-    BEGIN, DISCHARGE, DRAG, EFFECTS, FORMS, LOG_AT, MAX_RATE, ModelNumber, Numbers, TAU, THRUST, span,
-};
+use super::numbers::{DISCHARGE, DRAG, EFFECTS, FORMS, LOG_AT, MAX_RATE, ModelNumber, Numbers, TAU, THRUST, span};
 use crate::model::constants::CONTROL_S;
 use crate::model::dynamics::extended::Extended;
 use crate::model::dynamics::{Factors, Parameters, drag};
@@ -34,7 +32,7 @@ impl Model {
             self.base[THRUST.start + with] = 0.0;
             (self.numbers[THRUST.start + with].low, self.numbers[THRUST.start + with].high) = (0.0, 0.0);
         }
-        for number in &mut self.numbers[bends::THRUST..BEGIN] {
+        for number in &mut self.numbers[bends::THRUST..bends::VELOCITY] {
             (number.low, number.high) = (0.0, 0.0);
         }
     }

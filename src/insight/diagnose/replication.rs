@@ -22,10 +22,20 @@ pub struct Replicated {
 }
 
 impl Replicated {
+    /// Whether many stretches of flight agree.
+    pub fn agreed(&self) -> bool {
+        self.count >= AGREEING_STRETCHES.get()
+    }
+
+    /// Whether it is no more than a chance of many.
+    pub fn weak(&self) -> bool {
+        !self.evident() && (!self.agreed() || self.sure < STRETCH_DEVIATIONS.get())
+    }
+
     pub fn evident(&self) -> bool {
         let rarely =
             self.alone >= RARE_STRETCHES.get() && self.held >= RARE_SHARE.get() && self.sure >= RARE_DEVIATIONS.get();
-        self.count >= AGREEING_STRETCHES.get() && self.sure >= SURE_DEVIATIONS.get() || rarely
+        self.agreed() && self.sure >= SURE_DEVIATIONS.get() || rarely
     }
 }
 

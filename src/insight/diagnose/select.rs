@@ -44,13 +44,20 @@ impl Selection {
         Self { point: fit::fit(problem, &self.whitener, &x, &free), ..self }
     }
 
-    /// The same without the effects `ids` and without anything bent, fitted again.
+    /// The same without the effects `ids`, and without anything bent, which is no part of a vehicle; fitted again.
     pub fn without(&self, problem: &Problem, ids: &[&str]) -> Self {
+        self.less(problem, ids, self.point.free.iter().copied().filter(|k| is_form(*k)).collect())
+    }
+
+    /// The same without the effects `ids`, fitted again.
+    pub fn but(&self, problem: &Problem, ids: &[&str]) -> Self {
+        self.less(problem, ids, Vec::new())
+    }
+
+    /// The same without the effects `ids` and the numbers `dropped`, fitted again.
+    fn less(&self, problem: &Problem, ids: &[&str], mut dropped: Vec<usize>) -> Self {
         let gone = |a: &Added| ids.contains(&a.card.id);
-        let effects = self.added.iter().filter(|a| gone(a)).flat_map(|a| span(a.card));
-        // What only bends a cause is no part of a vehicle.
-        let forms = self.point.free.iter().copied().filter(|k| is_form(*k));
-        let dropped: Vec<usize> = effects.chain(forms).collect();
+        dropped.extend(self.added.iter().filter(|a| gone(a)).flat_map(|a| span(a.card)));
         let mut x = self.point.x.clone();
         dropped.iter().for_each(|&k| x[k] = 0.0);
         let free: Vec<usize> = self.point.free.iter().copied().filter(|k| !dropped.contains(k)).collect();

@@ -38,12 +38,11 @@ pub fn estimate(problem: &Problem, state: &Predictions, residual: &ChannelValues
             let time = problem.records[f].time[problem.records[f].bins[from + window / 2][0]];
             let expected = (skew * time / BIN_S) as i64;
             let range = expected - reach as i64..=expected + reach as i64;
-            let best = range
-                .map(|lag| (alike(&series, from, window, lag), lag))
-                .max_by(|a, b| a.0.total_cmp(&b.0))
-                .filter(|(like, _)| *like > like_enough);
-            if let Some((_, lag)) = best {
-                points.push((time, lag as f64 * BIN_S));
+            let like = |lag| alike(&series, from, window, lag);
+            let best = range.map(|lag| (like(lag), lag)).max_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((most, lag)) = best.filter(|(most, _)| *most > like_enough) {
+                let between = summit(like(lag - 1), most, like(lag + 1));
+                points.push((time, (lag as f64 + between) * BIN_S));
                 let ratios: Vec<f64> = points.iter().filter(|p| p.0 > 0.3 * time).map(|p| p.1 / p.0).collect();
                 skew = median(&ratios);
                 // Known to a bin or two over the time so far; ahead lies one more window.
@@ -60,6 +59,12 @@ pub fn estimate(problem: &Problem, state: &Predictions, residual: &ChannelValues
     (!slopes.is_empty()).then(|| median(&slopes))
 }
 
+/// Where a parabola through values at -1, 0 and 1, of which that at 0 is the highest, is highest.
+fn summit(before: f64, at: f64, after: f64) -> f64 {
+    let bend = before - 2.0 * at + after;
+    if bend < -1e-9 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 }
+}
+
 /// Correlation of what is predicted in a window with what was measured `lag` bins later, over both axes.
 fn alike(series: &[[Vec<f64>; 2]; 2], from: usize, window: usize, lag: i64) -> f64 {
     let (mut xy, mut xx, mut yy) = (0.0, 0.0, 0.0);
@@ -74,4 +79,16 @@ fn alike(series: &[[Vec<f64>; 2]; 2], from: usize, window: usize, lag: i64) -> f
         }
     }
     if xx > 0.0 && yy > 0.0 { xy / (xx * yy).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::summit;
+
+    #[test]
+    fn a_parabola_is_highest_between_its_points() {
+        let of = |x: f64| 1.0 - (x - 0.3).powi(2);
+        assert!((summit(of(-1.0), of(0.0), of(1.0)) - 0.3).abs() < 1e-12);
+        assert_eq!(summit(1.0, 1.0, 1.0), 0.0);
+    }
 }

@@ -119,11 +119,15 @@ fn gravity(log: &Log, chosen: &[usize], findings: &mut Vec<LogFinding>) {
     }
 }
 
+/// Means of every `n` values that follow each other.
+fn mean_of(values: &[f64], n: usize) -> Vec<f64> {
+    values.windows(n).map(mean).collect()
+}
+
 /// Velocity is the change of position.
 fn velocity(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
     let odometry = &log.odometry;
     let times = &odometry.time_s;
-    // Over a tenth of a second, noise of the position matters little.
     if times.len() < 2 {
         return;
     }
@@ -140,6 +144,8 @@ fn velocity(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
                 measured.push(v);
             }
         }
+        // Over half a second, noise of the position matters little.
+        let [from_position, measured] = [from_position, measured].map(|v| mean_of(&v, 5));
         let agreement = correlation(&from_position, &measured);
         let moving = measured.iter().map(|v| v.abs()).fold(0.0, f64::max) > VELOCITY_SPEED_M_S.get();
         if measured.len() > VELOCITY_SAMPLES.count() && moving && agreement < VELOCITY_CORRELATION.get() {

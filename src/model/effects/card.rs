@@ -18,6 +18,8 @@ pub struct Card {
     pub shape: Option<usize>,
     /// Identifiers of the effects that it is the whole of, each at its own size.
     pub parts: &'static [&'static str],
+    /// Identifiers of effects that every vehicle has and that together look like it: it is named where they do worse.
+    pub together: &'static [&'static str],
     /// What its equation changes, and what it takes from what other numbers make.
     pub writes: &'static [Quantity],
     pub reads: &'static [Quantity],
@@ -61,6 +63,7 @@ impl Card {
         parameters: &[],
         shape: None,
         parts: &[],
+        together: &[],
         writes: &[],
         reads: &[],
         channels: &[],

@@ -11,6 +11,7 @@ impl Effect for ClockSkew {
         sentence: "one recorder's clock drifts away from the other's over the flight",
         kind: EffectKind::Sensor,
         parameters: &[EffectParameter { name: "skew", unit: "1", low: -0.03, high: 0.03, typical: [1e-4, 0.016] }],
+        together: &["rate_delay", "response_voltage"],
         writes: &[Quantity::RateCommand, Quantity::ThrustCommand, Quantity::Integrated],
         channels: &[ResidualChannel::Rate, ResidualChannel::Turn],
         role: Role::ClockFast,

@@ -1,4 +1,6 @@
-//! Response that slows with the battery: tau becomes tau (1 + k (V_full - V)) on the rate axes.
+//! Response that slows with the battery, by 1 + k (V_full - V) on the rate axes: lag, second order (T2) and limit of the
+//! angular acceleration alike. Motors turn a vehicle by the square of the voltage, and the gain of its rate loop and its
+//! largest angular acceleration fall by as much.
 
 use super::{Actuator, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
@@ -25,8 +27,6 @@ impl Effect for ResponseVoltage {
 
     #[inline(always)]
     fn actuator<R: Real>(k: &[R], actuator: &mut Actuator<R>) {
-        let slower = k[0].mul_add(actuator.missing_v, R::one()).max(R::of(0.2));
-        let [roll, pitch, yaw, thrust] = actuator.tau;
-        actuator.tau = [roll * slower, pitch * slower, yaw * slower, thrust];
+        actuator.slower = k[0].mul_add(actuator.missing_v, R::one()).max(R::of(0.2));
     }
 }

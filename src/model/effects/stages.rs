@@ -34,6 +34,8 @@ pub struct Actuator<R> {
     pub inertia: [R; 3],
     /// One over the largest angular acceleration of each axis, s2/rad.
     pub slew: [R; 3],
+    /// So many times longer the whole response of the rates takes.
+    pub slower: R,
     /// How much the terminal voltage is below full, V.
     pub missing_v: R,
 }

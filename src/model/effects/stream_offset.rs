@@ -13,6 +13,7 @@ impl Effect for StreamOffset {
         sentence: "in the log the gyro lags everything else by some milliseconds, though in flight it does not",
         kind: EffectKind::Sensor,
         parameters: &[EffectParameter { name: "offset", unit: "s", low: -0.05, high: 0.05, typical: [0.001, 0.015] }],
+        together: &["rate_delay"],
         writes: &[Quantity::GyroTime],
         channels: &[ResidualChannel::Rate, ResidualChannel::Turn],
         role: Role::GyroLate,

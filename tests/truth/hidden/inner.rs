@@ -20,24 +20,24 @@ pub fn wanted(craft: &Craft, world: &World, command: [f64; 4]) -> Vector3<f64> {
 pub fn change(craft: &Craft, world: &World, command: [f64; 4], time: f64) -> [Vector3<f64>; 2] {
     let (vehicle, terms) = (&world.vehicle, &world.terms);
     let error = wanted(craft, world, command) - craft.rates;
+    let slower = 1.0 + terms.response_voltage * (vehicle.full_v - battery::terminal(craft, world, time));
     let mut spin = Vector3::zeros();
     let mut rates = if let Some([wn, zeta]) = terms.second_order {
-        spin = error * (wn * wn) - craft.spin * (2.0 * zeta * wn);
+        spin = error * (wn * wn / slower) - craft.spin * (2.0 * zeta * wn);
         craft.spin
     } else {
-        let slower = 1.0 + terms.response_voltage * (vehicle.full_v - battery::terminal(craft, world, time));
         Vector3::from_fn(|k, _| error[k] / (vehicle.tau[k] * slower))
     };
     if let Some([wn, zeta]) = terms.yaw_second_order {
-        spin.z = error.z * (wn * wn) - craft.spin.z * (2.0 * zeta * wn);
+        spin.z = error.z * (wn * wn / slower) - craft.spin.z * (2.0 * zeta * wn);
         rates.z = craft.spin.z;
     }
     if let Some(limit) = terms.slew {
-        let limits = Vector3::new(limit, limit, YAW_SLEW * limit);
+        let limits = Vector3::new(limit, limit, YAW_SLEW * limit) / slower;
         rates = rates.zip_map(&limits, |rate, limit| rate.clamp(-limit, limit));
     }
     if let Some(limit) = terms.yaw_slew {
-        rates.z = rates.z.clamp(-limit, limit);
+        rates.z = rates.z.clamp(-limit / slower, limit / slower);
     }
     let w = craft.rates;
     rates.x += terms.gyroscopic * w.y * w.z;

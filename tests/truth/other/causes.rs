@@ -15,9 +15,10 @@ const fn kind(id: &'static str, right: &'static [&'static str], low: f64, high: 
     Kind { id, right, range: [low, high] }
 }
 
-/// What is true of every vehicle of this truth, and in no compact model: a rate loop with filters, yaw led by the
-/// rotors, motors that end at full and at idle, and a mixer that makes room for turns. Neither right nor wrong.
-pub const OWN: [&str; 8] = [
+/// What is true of every vehicle of this truth, and in no compact model: a rate loop with filters, whose gain falls with
+/// the square of the voltage, yaw led by the rotors, motors that end at full and at idle, and a mixer that makes room for
+/// turns. Neither right nor wrong.
+pub const OWN: [&str; 9] = [
     "rate_delay",
     "yaw_delay",
     "rate_second_order",
@@ -26,6 +27,7 @@ pub const OWN: [&str; 8] = [
     "yaw_slew_limit",
     "mixer_thrust_loss",
     "mixer_room",
+    "response_voltage",
 ];
 
 /// All forms. Units are those of the equations that use them.

@@ -1,5 +1,6 @@
-//! Two effects whose parts are opposite over the log and sum to little.
+//! Two effects whose parts are opposite over the log and sum to little, or nearly the same.
 
+use crate::insight::criteria::rival::ONE_LIKENESS;
 use crate::insight::criteria::unseen::{CANCEL_LEFT, CANCEL_LIKENESS};
 use crate::insight::diagnose::fitted::FittedSelection;
 use crate::insight::diagnose::numbers::span;
@@ -8,18 +9,37 @@ use crate::insight::estimate::gram::Grams;
 use crate::model::effects::Card;
 use nalgebra::DMatrix;
 
-/// Pairs among `cards` that cancel each other.
-pub fn pairs(fitted: &FittedSelection, cards: &[&'static Card]) -> Vec<[usize; 2]> {
+/// Inner products of what effects add to the prediction, whitened.
+pub struct Parts(DMatrix<f64>);
+
+/// Those of `cards`.
+pub fn parts(fitted: &FittedSelection, cards: &[&'static Card]) -> Parts {
     let (problem, point) = (fitted.problem, fitted.point());
     let part = |card: &&'static Card| {
         let none: Vec<(usize, f64)> = span(card).map(|k| (k, 0.0)).collect();
         fitted.selection.whitener.apply(&problem.secant(&point.state, &point.x, &none, -1.0), &problem.rows)
     };
     let parts: Vec<ChannelValues> = cards.iter().map(part).collect();
-    let gram = Grams::new(&parts.iter().collect::<Vec<_>>(), &problem.rows, problem.blocks).sum;
-    let n = cards.len();
-    let all = (0..n).flat_map(|a| (0..a).map(move |b| [b, a]));
-    all.filter(|[a, b]| cancel(&gram, *a, *b)).collect()
+    Parts(Grams::new(&parts.iter().collect::<Vec<_>>(), &problem.rows, problem.blocks).sum)
+}
+
+impl Parts {
+    fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        (0..self.0.nrows()).flat_map(|a| (0..a).map(move |b| [b, a]))
+    }
+
+    /// Pairs that cancel each other.
+    pub fn cancelling(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.pairs().filter(|[a, b]| cancel(&self.0, *a, *b))
+    }
+
+    /// Pairs that are much the same, the larger part first.
+    pub fn alike(&self) -> impl Iterator<Item = [usize; 2]> {
+        let gram = &self.0;
+        let alike =
+            |[a, b]: &[usize; 2]| gram[(*a, *b)] > ONE_LIKENESS.get() * (gram[(*a, *a)] * gram[(*b, *b)]).sqrt();
+        self.pairs().filter(alike).map(|[a, b]| if gram[(a, a)] < gram[(b, b)] { [b, a] } else { [a, b] })
+    }
 }
 
 fn cancel(gram: &DMatrix<f64>, a: usize, b: usize) -> bool {

@@ -44,9 +44,14 @@ pub fn actuator_response<R: Real>(
     let values = &p.values;
     let zero = R::zero();
     let tau = p.tau;
-    let mut actuator =
-        Actuator { tau, tau_down: tau[3], inertia: [zero; 3], slew: [zero; 3], missing_v: p.full_v - voltage };
+    let (inertia, slew, missing_v) = ([zero; 3], [zero; 3], p.full_v - voltage);
+    let mut actuator = Actuator { tau, tau_down: tau[3], inertia, slew, slower: R::one(), missing_v };
     effects::actuator(values, &mut actuator);
+    for i in 0..3 {
+        actuator.tau[i] = actuator.tau[i] * actuator.slower;
+        actuator.inertia[i] = actuator.inertia[i] * actuator.slower;
+        actuator.slew[i] = actuator.slew[i] * actuator.slower;
+    }
     let rates = build!(|i| command[i] * p.compact.max_rate[i]);
     let throttle = throttle(command[3]);
     let mut setpoint =
