@@ -78,6 +78,7 @@ use channels::NAMES;
 use finding::{Diagnosis, Finding, Residual, Status, Verdict};
 use findings::Judgement;
 use fitted::FittedSelection;
+use judge::Judged;
 use model::Model;
 use problem::Problem;
 use record::FlightRecord;
@@ -137,12 +138,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let driven: Vec<motors::Driven> = problem.records.iter().flat_map(|r| r.driven.clone()).collect();
     one_motor::name(&driven, &mut findings);
     let held = gain::measure(&problem, &selection, kept);
-    for finding in &mut findings {
-        let one = judged.iter().find(|j| j.finding.effect == finding.effect);
-        let is_held = finding.status != Status::Suspected;
-        let all = one.map_or(held.channels.clone(), |j| held.of_one(&problem, &j.change, is_held));
-        finding.gain = all.into_iter().filter(|(c, _)| finding.explained.contains_key(c)).collect();
-    }
+    gains(&problem, &held, &judged, &mut findings);
     findings.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
     let verdict = match (unexplained.is_empty(), findings.is_empty()) {
         (false, _) => Verdict::Unexplained,
@@ -175,6 +171,16 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         not_extended: extended.as_ref().err().cloned(),
     };
     Diagnosed { diagnosis, vehicle: extended, changes: None, problem, selection }
+}
+
+/// What each finding gains on flight that was not used for fitting.
+fn gains(problem: &Problem, held: &gain::HeldOut, judged: &[Judged], findings: &mut [Finding]) {
+    for finding in findings {
+        let one = judged.iter().find(|j| j.finding.effect == finding.effect);
+        let is_held = finding.status != Status::Suspected;
+        let all = one.map_or(held.channels.clone(), |j| held.of_one(problem, &j.change, is_held));
+        finding.gain = all.into_iter().filter(|(c, _)| finding.explained.contains_key(c)).collect();
+    }
 }
 
 /// By impact; what is only suspected comes last.

@@ -91,8 +91,8 @@ fn what_two_delays_have_in_common_may_be_the_links() {
     assert!(["link_delay", "imu_late"].iter().all(|id| thrust.members.contains(id)), "{:?}", thrust.members);
 }
 
-/// Rule 10: a rate loop that answers late, and later as the battery empties, is no clock that runs fast. This is log 6 of
-/// the benchmark's `--tier other --seed 21 --seconds 100`.
+/// Rule 10: a rate loop that answers late, and later as the battery empties, is no clock that runs fast. This is log 6
+/// of the benchmark's `--tier other --seed 21 --seconds 100`.
 #[test]
 fn a_response_that_slows_is_no_clock() {
     let mut rng =

@@ -155,7 +155,9 @@ def main():
                 named = [f for f in said["findings"] if f["status"] != "suspected" and f["effect"] not in OWN]
                 wrong = [f["effect"] for f in named if not set(f["members"]) & set(right)]
                 suspected = [f["effect"] for f in said["findings"] if f["status"] == "suspected"]
-                first = bool(named) and named[0]["effect"] in right
+                # Another mass is thrust that moved against the base vehicle, named or not.
+                moved = any(d["parameter"].startswith("thrust over mass") for d in said["drift"])
+                first = named[0]["effect"] in right if named else cause == "load" and moved
                 lines.writerow([cause, size, seed, args.seconds, " ".join(f["effect"] for f in named),
                                 " ".join(suspected), said["verdict"], int(first), " ".join(wrong)])
                 file.flush()

@@ -28,15 +28,15 @@ fn named(fitted: &FittedSelection, findings: &[Finding]) -> Vec<(usize, &'static
 
 fn cancelling(fitted: &FittedSelection, findings: &mut [Finding]) {
     let cards = named(fitted, findings);
-    let parts = cancel::parts(fitted, &cards.iter().map(|(_, card)| *card).collect::<Vec<_>>());
+    let overlap = cancel::overlap(fitted, &cards.iter().map(|(_, card)| *card).collect::<Vec<_>>());
     // Of rivals that write the same and point the same way, one has the name: the form of the cause lies between.
-    for [larger, smaller] in parts.alike().map(|pair| pair.map(|i| cards[i])) {
+    for [larger, smaller] in overlap.alike().map(|pair| pair.map(|i| cards[i])) {
         if are_rivals(larger.1, smaller.1) && larger.1.writes == smaller.1.writes {
             findings[smaller.0].suspect(format!("it is much like {}: they may be one cause", larger.1.name));
             findings[larger.0].or(smaller.1.id);
         }
     }
-    for [a, b] in parts.cancelling() {
+    for [a, b] in overlap.cancelling() {
         let (a, b) = (cards[a], cards[b]);
         for ((i, _), (_, other)) in [(a, b), (b, a)] {
             findings[i].suspect(format!("it and {} cancel each other: this flight cannot tell either", other.name));
@@ -54,8 +54,8 @@ fn unshown(fitted: &FittedSelection, findings: &mut [Finding]) {
 }
 
 fn unpaid(fitted: &FittedSelection, findings: &mut [Finding]) {
-    // Lost commands are counted, not fitted; clocks that run apart are followed from one stretch of time to the next, for
-    // no step of a linear fit reaches them.
+    // Lost commands are counted, not fitted; clocks that run apart are followed from one stretch of time to the next,
+    // for no step of a linear fit reaches them.
     let mut cards = named(fitted, findings);
     cards.retain(|(_, card)| card.role != Role::CommandsLost && !followed(fitted, card));
     let places: Vec<Vec<usize>> = cards.iter().map(|(_, card)| fitted.places(card)).collect();

@@ -136,7 +136,7 @@ impl Numbers {
         self.add("battery.rate_v_s".into(), "V/s", vehicle.battery.rate_v_s, extent, &[Quantity::Voltage]);
     }
 
-    /// What bends response, thrust and a velocity's lag: nothing, in the base.
+    /// What bends response, thrust, a velocity's lag and the drag: nothing, in the base.
     fn forms(&mut self, vehicle: &Vehicle) {
         for i in 0..forms::RESPONSE {
             let name = format!("response.{}.{}", ["roll", "pitch", "yaw"][i / TAPS_S.len()], i % TAPS_S.len());
@@ -150,6 +150,10 @@ impl Numbers {
         }
         let extent = Extent { bounds: [0.0, 1.0], step: 0.05, trust: 1.0 };
         self.add("velocity.delay".into(), "1", 0.0, extent, &[Quantity::Integrated]);
+        for axis in ["x", "y", "z"] {
+            let extent = Extent { bounds: [-0.1, 0.1], step: 2e-4, trust: TRUST_DRAG.get() };
+            self.add(format!("drag.{axis}"), "1/m", 0.0, extent, &[Quantity::SpecificForce]);
+        }
     }
 
     /// All effects, those of the simulator at the vehicle's own sizes.

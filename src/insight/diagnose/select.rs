@@ -179,8 +179,8 @@ impl<'a> Search<'a> {
         let held = self.held();
         trials.retain(|t| !(t.bounded(problem) && held.iter().any(|h| are_rivals(h, t.card))));
         let Some(best) = best(problem, &trials) else { return false };
-        if bends::thrusts(best.card) {
-            // How thrust goes with throttle and voltage is the vehicle's own.
+        if bends::thrusts(best.card) || bends::brakes(best.card) {
+            // How thrust goes with throttle and voltage, and drag with the direction, is the vehicle's own.
             let bent = bend(problem, &self.whitener, self.point.clone(), &[best.card]);
             if bent.free.len() > self.point.free.len() {
                 self.point = bent;

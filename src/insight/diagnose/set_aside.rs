@@ -1,5 +1,5 @@
-//! Effects that the flight does not show by themselves, set aside where another is sure without them: several that stand
-//! in for one another leave no certainty to any.
+//! Effects that the flight does not show by themselves, set aside where another is sure without them: several that
+//! stand in for one another leave no certainty to any.
 
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
@@ -22,7 +22,7 @@ pub fn set_aside(problem: &Problem, selection: Selection) -> (Selection, Vec<Fin
         |card: &Card| unsure.iter().any(|u| u.id != card.id && u.channels.iter().any(|c| card.channels.contains(c)));
     let weak: Vec<&Added> = shown.iter().filter(|(a, r)| r.weak() && beside(a.card)).map(|(a, _)| *a).collect();
     let stay = |card: &&Card| weak.iter().all(|a| a.card.id != card.id);
-    if weak.is_empty() || !unsure.iter().any(|card| stay(&card)) {
+    if weak.is_empty() || !unsure.iter().any(&stay) {
         return (selection, Vec::new());
     }
     let without = selection.but(problem, &weak.iter().map(|a| a.card.id).collect::<Vec<_>>());

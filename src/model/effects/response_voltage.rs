@@ -1,6 +1,6 @@
-//! Response that slows with the battery, by 1 + k (V_full - V) on the rate axes: lag, second order (T2) and limit of the
-//! angular acceleration alike. Motors turn a vehicle by the square of the voltage, and the gain of its rate loop and its
-//! largest angular acceleration fall by as much.
+//! Response that slows with the battery, by 1 + k (V_full - V) on the rate axes: lag, second order (T2) and limit of
+//! the angular acceleration alike. Motors turn a vehicle by the square of the voltage; the gain of its rate loop and
+//! its largest angular acceleration fall by as much.
 
 use super::{Actuator, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;

@@ -15,9 +15,9 @@ const fn kind(id: &'static str, right: &'static [&'static str], low: f64, high: 
     Kind { id, right, range: [low, high] }
 }
 
-/// What is true of every vehicle of this truth, and in no compact model: a rate loop with filters, whose gain falls with
-/// the square of the voltage, yaw led by the rotors, motors that end at full and at idle, and a mixer that makes room for
-/// turns. Neither right nor wrong.
+/// What is true of every vehicle of this truth, and in no compact model: a rate loop with filters, whose gain falls
+/// with the square of the voltage, yaw led by the rotors, motors that end at full and at idle, and a mixer that makes
+/// room for turns. Neither right nor wrong.
 pub const OWN: [&str; 9] = [
     "rate_delay",
     "yaw_delay",

@@ -10,20 +10,20 @@ use crate::model::effects::Card;
 use nalgebra::DMatrix;
 
 /// Inner products of what effects add to the prediction, whitened.
-pub struct Parts(DMatrix<f64>);
+pub struct Overlap(DMatrix<f64>);
 
 /// Those of `cards`.
-pub fn parts(fitted: &FittedSelection, cards: &[&'static Card]) -> Parts {
+pub fn overlap(fitted: &FittedSelection, cards: &[&'static Card]) -> Overlap {
     let (problem, point) = (fitted.problem, fitted.point());
     let part = |card: &&'static Card| {
         let none: Vec<(usize, f64)> = span(card).map(|k| (k, 0.0)).collect();
         fitted.selection.whitener.apply(&problem.secant(&point.state, &point.x, &none, -1.0), &problem.rows)
     };
     let parts: Vec<ChannelValues> = cards.iter().map(part).collect();
-    Parts(Grams::new(&parts.iter().collect::<Vec<_>>(), &problem.rows, problem.blocks).sum)
+    Overlap(Grams::new(&parts.iter().collect::<Vec<_>>(), &problem.rows, problem.blocks).sum)
 }
 
-impl Parts {
+impl Overlap {
     fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
         (0..self.0.nrows()).flat_map(|a| (0..a).map(move |b| [b, a]))
     }
