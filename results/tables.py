@@ -156,6 +156,39 @@ def rotorpy():
     )
 
 
+def rotorpy_diagnosis():
+    """Flights in rotorpy with one cause switched on, by what is said of them."""
+    causes = {}
+    for r in rows("rotorpy-diagnosis"):
+        causes.setdefault(r["cause"], []).append(r)
+    body = []
+    for cause, of in causes.items():
+        right = f"{sum(r['right_first'] == '1' for r in of)} of {len(of)}" if cause != "none" else "-"
+        missed = "; ".join(f"{float(r['size']):g}: {r['named'] or 'nothing'}" for r in of if r["right_first"] != "1")
+        body.append((cause, len(of), right, sum(bool(r["wrong"]) for r in of), missed if cause != "none" else ""))
+    head = ["switched on", "flights", "right first", "with a wrong name", "named where it was not right, by size"]
+    return table(head, body)
+
+
+def other_truth():
+    """The third truth's logs of 100 s, by seed and build."""
+    builds = {}
+    for r in rows("other-truth"):
+        if r["seed"] in ("21", "22"):
+            builds.setdefault(f"seed {r['seed']}, build {r['build']}", []).append(r)
+    share = lambda of, said: wilson(sum(map(said, of)), len(of))
+    hidden = lambda of: [r for r in of if r["group"] in ("one", "two")]
+    clean = lambda of: [r for r in of if r["group"] == "none"]
+    body = [
+        ("a name with nothing behind it", *[share(of, lambda r: r["spurious"] != "") for of in builds.values()]),
+        ("clean: a false name", *[share(clean(of), lambda r: r["spurious"] != "") for of in builds.values()]),
+        ("one or two causes: right first", *[share(hidden(of), lambda r: r["first_right"] == "1")
+                                             for of in builds.values()]),
+        ("told to be unexplained", *[share(of, lambda r: r["unexplained"] == "1") for of in builds.values()]),
+    ]
+    return table(["", *builds], body)
+
+
 def against():
     """Pairs of flights, by what is said of them."""
     pairs = rows("against")
@@ -219,7 +252,7 @@ def precision():
     return table(head, body)
 
 
-TABLES = [training, budgets, refinement, tried, loop, rotorpy, against, plan, blackbox, precision]
+TABLES = [training, budgets, refinement, tried, loop, rotorpy, rotorpy_diagnosis, other_truth, against, plan, blackbox, precision]
 MADE = {f.__name__: f for f in TABLES}
 
 

@@ -31,13 +31,16 @@ pub fn brakes(card: &Card) -> bool {
     card.writes.contains(&Quantity::SpecificForce) && card.reads.contains(&Quantity::Velocity)
 }
 
+/// The numbers that bend the drag: not beside a cause that goes with the velocity, but in its place.
+pub fn of_drag() -> impl Iterator<Item = usize> {
+    DRAG..BEGIN
+}
+
 /// The numbers that bend what effects of `held` are about.
 pub fn open(held: &[&'static Card]) -> impl Iterator<Item = usize> {
-    let [response, thrust, velocity, drag] =
-        [responds, thrusts, lags, brakes].map(|about| held.iter().any(|card| about(card)));
-    let of_body = [(FORMS..THRUST, response), (THRUST..VELOCITY, thrust)];
-    let of_motion = [(VELOCITY..DRAG, velocity), (DRAG..BEGIN, drag)];
-    of_body.into_iter().chain(of_motion).filter(|(_, is_open)| *is_open).flat_map(|(span, _)| span)
+    let [response, thrust, velocity] = [responds, thrusts, lags].map(|about| held.iter().any(|card| about(card)));
+    let spans = [(FORMS..THRUST, response), (THRUST..VELOCITY, thrust), (VELOCITY..DRAG, velocity)];
+    spans.into_iter().filter(|(_, is_open)| *is_open).flat_map(|(span, _)| span)
 }
 
 /// Where those of the thrust begin.

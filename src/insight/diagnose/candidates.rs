@@ -5,7 +5,7 @@ use super::numbers::{BEGIN, DISCHARGE, span};
 use super::problem::{ChannelValues, Problem};
 use super::whiten::Whitener;
 use crate::insight::criteria::evident::SKEW_TRIED;
-use crate::model::effects::{self, Card, CompactNumber, EffectKind, Quantity, Role, are_rivals};
+use crate::model::effects::{self, Card, EffectKind, Quantity, Role, are_rivals};
 use rayon::prelude::*;
 
 /// What others are computed from: a cause that changes one of these changes what other causes would do.
@@ -91,10 +91,7 @@ pub fn causes(problem: &Problem) -> Vec<&'static Card> {
         Role::ClockFast => !one_clock,
         _ => true,
     };
-    // All of a thrust and a drag in proportion is a move of the base; beside others it would only undo one.
-    let is_move =
-        |card: &&Card| [CompactNumber::Thrust, CompactNumber::Drag].iter().all(|n| card.absorbed_by.contains(n));
-    effects::cards().filter(can_be_tried).filter(|card| !in_base(card) && !is_move(card)).collect()
+    effects::cards().filter(can_be_tried).filter(|card| !in_base(card)).collect()
 }
 
 /// Candidates in all directions; those that change nothing are left out.
