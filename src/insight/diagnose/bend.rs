@@ -9,16 +9,11 @@ use super::whiten::Whitener;
 use crate::insight::criteria::evident::LEAST_GAIN;
 use crate::model::effects::Card;
 
-/// `point` with the response or the thrust bent, where one of `held` is about it and the bend is evident.
+/// `point` with the response, the thrust or a lag bent, where one of `held` is about it and the bend is evident.
 pub fn bend(problem: &Problem, whitener: &Whitener, point: FitPoint, held: &[&'static Card]) -> FitPoint {
-    bend_by(problem, whitener, point, bends::open(held))
-}
-
-/// The same by the numbers `open`.
-pub fn bend_by(problem: &Problem, whitener: &Whitener, point: FitPoint, open: impl Iterator<Item = usize>) -> FitPoint {
     let numbers = &problem.model.numbers;
     let known = |k: &usize| numbers[*k].high > numbers[*k].low && !point.free.contains(k);
-    let open: Vec<usize> = open.filter(known).collect();
+    let open: Vec<usize> = bends::open(held).filter(known).collect();
     if open.is_empty() {
         return point;
     }

@@ -1,9 +1,9 @@
-//! Numbers by which the rate response, the thrust, a velocity's lag and the drag are bent. They take part in fits once
-//! an effect of the same is in, and in nothing that is written or reported.
+//! Numbers by which the rate response, the thrust and a velocity's lag are bent. They take part in fits once an effect
+//! of the same is in, and in nothing that is written or reported.
 
 use super::forms::{self, TAPS_S};
 use super::numbers::{BEGIN, FORMS};
-use crate::model::effects::{Card, CompactNumber, Quantity, RateResponse, ResidualChannel, Role};
+use crate::model::effects::{Card, CompactNumber, RateResponse, ResidualChannel, Role};
 
 /// Whether a number bends something.
 pub fn is_form(k: usize) -> bool {
@@ -26,20 +26,10 @@ fn lags(card: &Card) -> bool {
     card.role == Role::VelocityLag
 }
 
-/// Whether an effect is about a force that goes with the velocity.
-pub fn brakes(card: &Card) -> bool {
-    card.writes.contains(&Quantity::SpecificForce) && card.reads.contains(&Quantity::Velocity)
-}
-
-/// The numbers that bend the drag: not beside a cause that goes with the velocity, but in its place.
-pub fn of_drag() -> impl Iterator<Item = usize> {
-    DRAG..BEGIN
-}
-
 /// The numbers that bend what effects of `held` are about.
 pub fn open(held: &[&'static Card]) -> impl Iterator<Item = usize> {
     let [response, thrust, velocity] = [responds, thrusts, lags].map(|about| held.iter().any(|card| about(card)));
-    let spans = [(FORMS..THRUST, response), (THRUST..VELOCITY, thrust), (VELOCITY..DRAG, velocity)];
+    let spans = [(FORMS..THRUST, response), (THRUST..VELOCITY, thrust), (VELOCITY..BEGIN, velocity)];
     spans.into_iter().filter(|(_, is_open)| *is_open).flat_map(|(span, _)| span)
 }
 
@@ -48,15 +38,6 @@ pub const THRUST: usize = FORMS + forms::RESPONSE;
 
 /// Where that of the velocity's lag is.
 pub const VELOCITY: usize = THRUST + forms::THRUST;
-
-/// Where those of the drag begin.
-pub const DRAG: usize = VELOCITY + forms::VELOCITY;
-
-/// By how much the drag is bent along each axis, 1/m.
-pub fn drag(x: &[f64]) -> Option<[f64; forms::DRAG]> {
-    let sizes: [f64; forms::DRAG] = std::array::from_fn(|k| x[DRAG + k]);
-    sizes.iter().any(|size| *size != 0.0).then_some(sizes)
-}
 
 /// By how much the thrust is bent by each of [`forms::thrust`], m/s2.
 pub fn thrust(x: &[f64]) -> Option<&[f64]> {

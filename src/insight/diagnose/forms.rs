@@ -1,6 +1,5 @@
 //! Directions of form: what the rate response of a real flight controller has beside a lag and a delay, how the thrust
-//! of real motors goes with throttle and voltage together, whether a velocity that comes late lags or is delayed, and a
-//! drag of each axis by itself beside that of an ellipsoid.
+//! of real motors goes with throttle and voltage together, and whether a velocity that comes late lags or is delayed.
 
 /// The rate response is bent by the simulated rate's change so long before, s: at each time on each axis.
 pub const TAPS_S: [f64; 4] = [0.01, 0.025, 0.05, 0.1];
@@ -12,10 +11,8 @@ pub const RESPONSE: usize = 3 * TAPS_S.len();
 pub const THRUST: usize = 2;
 /// How many bend a lagging velocity: the share of its lag that is a delay.
 pub const VELOCITY: usize = 1;
-/// How many bend the drag: -k |v| v_i along each axis, where an ellipsoid's silhouette brakes all of them alike.
-pub const DRAG: usize = 3;
 /// How many numbers bend anything.
-pub const COUNT: usize = RESPONSE + THRUST + VELOCITY + DRAG;
+pub const COUNT: usize = RESPONSE + THRUST + VELOCITY;
 
 /// What the thrust is bent by, of a `command` in -1..1: rotors turn at a speed that goes with throttle times voltage.
 /// The thrust then has the squares of both, where Eq. 7 of the paper has the voltage and its product with the command.

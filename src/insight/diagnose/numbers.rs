@@ -150,10 +150,6 @@ impl Numbers {
         }
         let extent = Extent { bounds: [0.0, 1.0], step: 0.05, trust: 1.0 };
         self.add("velocity.delay".into(), "1", 0.0, extent, &[Quantity::Integrated]);
-        for axis in ["x", "y", "z"] {
-            let extent = Extent { bounds: [-0.1, 0.1], step: 2e-4, trust: TRUST_DRAG.get() };
-            self.add(format!("drag.{axis}"), "1/m", 0.0, extent, &[Quantity::SpecificForce]);
-        }
     }
 
     /// All effects, those of the simulator at the vehicle's own sizes.

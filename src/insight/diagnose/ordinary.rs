@@ -7,6 +7,7 @@ use super::fit::{self, FitPoint};
 use super::numbers::span;
 use super::problem::Problem;
 use super::select::{Added, Selection};
+use super::unseen::deviations;
 use crate::base::stats::mean;
 use crate::insight::criteria::evident::LEAST_GAIN;
 use crate::insight::criteria::rival::{SLOWED_MOST_S, TIE_DEVIATIONS};
@@ -72,7 +73,5 @@ fn middle(problem: &Problem) -> f64 {
 /// Whether stretches of time tell that `point` explains less than `than`.
 fn worse(point: &FitPoint, than: &FitPoint) -> bool {
     let differences: Vec<f64> = point.cost.iter().zip(&than.cost).map(|(a, b)| a - b).collect();
-    let spread = differences.iter().map(|d| d * d).sum::<f64>().sqrt();
-    let more = point.total() - than.total();
-    more > LEAST_GAIN.get() && more > TIE_DEVIATIONS.get() * spread
+    point.total() - than.total() > LEAST_GAIN.get() && deviations(&differences) > TIE_DEVIATIONS.get()
 }

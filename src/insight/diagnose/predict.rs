@@ -97,7 +97,6 @@ impl Predicted {
             let lag = [model.acting(x, Role::VelocityLag), model.vehicle().gravity_m_s2];
             self.push(&p, record, lag);
             self.bend_thrust(model, record, x);
-            self.bend_drag(record, x);
         }
         if dirty.any(&[Quantity::Gyro, Quantity::Accelerometer]) {
             self.sense(&p, dirty, model, record, x);
@@ -176,16 +175,6 @@ impl Predicted {
         for (i, force) in Arc::make_mut(&mut self.force).iter_mut().enumerate() {
             let forms = forms::thrust(self.command[i][3], self.voltage[i] / middle - 1.0);
             force[2] += sizes.iter().zip(forms).map(|(size, form)| size * form).sum::<f64>();
-        }
-    }
-
-    /// What the drag has beside an ellipsoid's.
-    fn bend_drag(&mut self, record: &FlightRecord, x: &[f64]) {
-        let Some(sizes) = bends::drag(x).filter(|_| record.moves) else { return };
-        for (i, force) in Arc::make_mut(&mut self.force).iter_mut().enumerate() {
-            let v: [f64; 3] = build!(|k| record.velocity[k][i]);
-            let speed = dot(v, v).sqrt();
-            (0..3).for_each(|k| force[k] -= sizes[k] * speed * v[k]);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Which effects explain the residuals: rank by score, refit the best and their rivals, keep the best, and again.
 
-use super::bend::{bend, bend_by};
+use super::bend::bend;
 use super::bends::{self, is_form};
 use super::candidates::{Candidate, base_numbers, candidates, causes, renewed};
 use super::fit::{self, FitPoint};
@@ -179,14 +179,6 @@ impl<'a> Search<'a> {
         let held = self.held();
         trials.retain(|t| !(t.bounded(problem) && held.iter().any(|h| are_rivals(h, t.card))));
         let Some(best) = best(problem, &trials) else { return false };
-        if bends::brakes(best.card) {
-            // A drag of each axis by itself is the vehicle's own, where it explains as much.
-            let bent = bend_by(problem, &self.whitener, self.point.clone(), bends::of_drag());
-            if bent.free.len() > self.point.free.len() && bent.total() < best.point.total() {
-                self.point = bent;
-                return true;
-            }
-        }
         if bends::thrusts(best.card) {
             // How thrust goes with throttle and voltage is the vehicle's own.
             let bent = bend(problem, &self.whitener, self.point.clone(), &[best.card]);
