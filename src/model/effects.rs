@@ -140,6 +140,7 @@ effects! {
         axial_inflow::AxialInflow
         translational_lift::TranslationalLift
         rate_thrust_coupling::RateThrustCoupling
+        axis_drag::AxisDrag
         rotor_drag::RotorDrag
         drag_asymmetry::DragAsymmetry
         body_lift::BodyLift

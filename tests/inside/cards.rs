@@ -85,16 +85,18 @@ fn passages() -> Vec<Passage> {
         let mut s = AerodynamicForces {
             throttle: v[0],
             velocity: three(&v[1..]),
-            rates: three(&v[4..]),
-            height: v[7],
-            rate_error: v[8],
-            elapsed: v[9],
-            specific_thrust: v[10],
-            force: three(&v[11..]),
+            damping: v[4],
+            drag: three(&v[5..]),
+            rates: three(&v[8..]),
+            height: v[11],
+            rate_error: v[12],
+            elapsed: v[13],
+            specific_thrust: v[14],
+            force: three(&v[15..]),
         };
         effects::aerodynamic_forces(&values(k), &mut s);
-        v[10] = s.specific_thrust;
-        v[11..].copy_from_slice(&s.force);
+        v[14] = s.specific_thrust;
+        v[15..].copy_from_slice(&s.force);
     };
     let sense: fn(&[f64], &mut [f64]) = |k, v| {
         let (rates, acceleration, force) = (three(v), three(&v[3..]), three(&v[6..]));
@@ -125,7 +127,8 @@ fn passages() -> Vec<Passage> {
         (
             vec![
                 input(ThrustCommand, 1),
-                input(Velocity, 3),
+                input(Velocity, 4),
+                fixed(3),
                 input(BodyRates, 3),
                 fixed(1),
                 input(RateError, 1),

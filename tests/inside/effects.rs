@@ -362,6 +362,9 @@ fn forces_follow_the_equations() {
     let behind = 0.5 * full[0] + 0.2 * full[1] + 0.1 * full[2];
     let [wx, wy, _] = s.body_rates(&compact);
     let (height, speed) = (0.25, 10.0);
+    let [kx, ky, kz] = compact.drag;
+    let damping = ((kx * vx).powi(2) + (ky * vy).powi(2) + (kz * vz).powi(2)).sqrt();
+    let askew = (speed * speed + vz * vz).sqrt();
     let sinking = -vz / (1.6 * lift.sqrt());
     let wake = (-((sinking - 1.2) / 0.5_f64).powi(2)).exp() * (sinking / 0.6).min(1.0);
     let fade: f64 = 60.0 / 300.0;
@@ -374,6 +377,7 @@ fn forces_follow_the_equations() {
         ("axial_inflow", 0.5, [0.0, 0.0, -0.5 * throttle * vz]),
         ("translational_lift", 0.01, [0.0, 0.0, 0.01 * speed * speed]),
         ("rate_thrust_coupling", 0.01, [0.0, 0.0, -0.01 * (wx * wx + wy * wy)]),
+        ("axis_drag", 0.5, std::array::from_fn(|i| 0.5 * (damping - compact.drag[i] * askew) * [vx, vy, vz][i])),
         ("rotor_drag", 0.2, [-0.2 * throttle * vx, -0.2 * throttle * vy, 0.0]),
         ("drag_asymmetry", 0.005, [-0.005 * vx * vx, 0.0, 0.0]),
         ("body_lift", 0.01, [0.01 * vz * vx, 0.0, -0.01 * speed * vz]),

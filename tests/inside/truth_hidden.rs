@@ -225,6 +225,13 @@ fn forces_are_those_of_the_catalogue() {
         let got = added(id, size, 0.2, v, [1.0, 2.0, 0.5], 0.0);
         assert!((got - Vector3::from(expected)).norm() < 1e-9, "{id}: {got} instead of {expected:?}");
     }
+    // Along an axis nothing changes; between two, the same axis brakes as much as the whole speed does along it.
+    let vehicle = Vehicle::seed_class();
+    let along = |v: [f64; 3]| truth::drag::per_mass(&vehicle, &Vector3::from(v));
+    assert!(added("axis_drag", 1.0, 0.2, [0.0, 0.0, 5.0], [0.0; 3], 0.0).norm() < 1e-12);
+    let askew = added("axis_drag", 0.5, 0.2, [3.0, 0.0, 4.0], [0.0; 3], 0.0);
+    let wanted = Vector3::new(along([5.0, 0.0, 0.0]).x * 0.6, 0.0, along([0.0, 0.0, 5.0]).z * 0.8);
+    assert!((askew - (wanted - along([3.0, 0.0, 4.0])) * 0.5).norm() < 1e-12, "{askew}");
     let faded = added("thrust_fade", 0.06, 0.2, [0.0; 3], [0.0; 3], 150.0);
     assert!((faded.z + 0.03 * thrust(0.2, 23.0)).abs() < 1e-9, "{faded}");
     let heavy = added("mass_or_density", -0.2, 0.2, v, [0.0; 3], 0.0);

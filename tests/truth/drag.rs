@@ -22,3 +22,11 @@ pub fn per_mass(vehicle: &Vehicle, air: &Vector3<f64>) -> Vector3<f64> {
     let pressure = 0.5 * vehicle.air_density * speed * speed;
     -along * (pressure * vehicle.drag_coefficient * silhouette(vehicle.semi_axes, &along) / vehicle.mass)
 }
+
+/// The same where each axis brakes for itself: along it as much as [`per_mass`], and nothing that turns with the flow.
+pub fn by_axis(vehicle: &Vehicle, air: &Vector3<f64>) -> Vector3<f64> {
+    let along = |axis: Vector3<f64>| silhouette(vehicle.semi_axes, &axis);
+    let areas = Vector3::new(along(Vector3::x()), along(Vector3::y()), along(Vector3::z()));
+    let pressure_by_speed = 0.5 * vehicle.air_density * air.norm();
+    -areas.component_mul(air) * (pressure_by_speed * vehicle.drag_coefficient / vehicle.mass)
+}

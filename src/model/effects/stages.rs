@@ -93,6 +93,9 @@ pub struct AerodynamicForces<R> {
     pub throttle: R,
     /// Velocity through the air, body frame, m/s.
     pub velocity: [R; 3],
+    /// The compact model's drag along each body axis, 1/m, and its factor on this velocity, 1/s.
+    pub drag: [R; 3],
+    pub damping: R,
     /// Body rates, rad/s.
     pub rates: [R; 3],
     /// Over the ground, m.

@@ -63,6 +63,7 @@ pub const CATALOGUE: &[Entry] = &[
     entry_of("rate_thrust_coupling", "k", "m/s2 per (rad/s)2", 0.002, 0.02, false),
     entry_of("thrust_fade", "k", "", 0.02, 0.08, false),
     entry_of("mass_or_density", "share", "", 0.05, 0.3, true),
+    entry_of("axis_drag", "share", "", 0.3, 1.0, false),
     entry_of("rotor_drag", "k", "1/s", 0.05, 0.5, false),
     entry_of("drag_asymmetry", "k", "1/m", 0.001, 0.008, true),
     entry_of("body_lift", "k", "1/m", 0.003, 0.03, false),

@@ -87,6 +87,7 @@ pub struct Terms {
     pub ocv_curve: f64,
     pub circuit: Option<Circuit>,
 
+    pub axis_drag: f64,
     pub rotor_drag: f64,
     pub blade_drag: f64,
     pub drag_asymmetry: f64,
@@ -164,6 +165,7 @@ impl Terms {
             "rate_thrust_coupling" => self.rate_thrust = get("k"),
             "thrust_fade" => self.fade = get("k"),
             "mass_or_density" => self.mass = get("share"),
+            "axis_drag" => self.axis_drag = get("share"),
             "rotor_drag" => self.rotor_drag = get("k"),
             "drag_asymmetry" => self.drag_asymmetry = get("k"),
             "body_lift" => self.body_lift = get("k"),

@@ -22,7 +22,8 @@ pub fn velocity(craft: &Craft, world: &World, blowing: &Vector3<f64>) -> Vector3
 /// Force over mass without thrust, body frame, m/s2; `lift` is thrust over mass.
 pub fn force(craft: &Craft, world: &World, flow: &Flow, lift: f64) -> Vector3<f64> {
     let (terms, v, share) = (&world.terms, flow.air, craft.share());
-    let mut force = drag::per_mass(&world.vehicle, v);
+    let mut force = drag::per_mass(&world.vehicle, v) * (1.0 - terms.axis_drag);
+    force += drag::by_axis(&world.vehicle, v) * terms.axis_drag;
     let mut side = terms.rotor_drag * share;
     if terms.blade_drag > 0.0 {
         // Blades drag with their own speed, which goes with the root of thrust.

@@ -191,6 +191,8 @@ pub fn force<R: Real>(p: &Extended<R>, at: &ForceInputs<R>) -> [R; 3] {
     let mut forces = AerodynamicForces {
         throttle: throttle(at.command),
         velocity: wind.velocity,
+        drag: p.compact.drag,
+        damping,
         rates: at.rates,
         height: at.height,
         rate_error: at.turn_error.share,
