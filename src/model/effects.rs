@@ -157,6 +157,7 @@ effects! {
         gusts::Gusts
         imu_lever_arm::ImuLeverArm
         imu_misalignment::ImuMisalignment
+        accel_misalignment::AccelMisalignment
         accel_scale::AccelScale
         gyro_scale::GyroScale
         accel_bias::AccelBias

@@ -36,9 +36,10 @@ CAUSES = {
     "gusts": (["gusts", "steady_wind"], [2.0, 4.0]),
     "load": (["mass_or_density"], [0.1, 0.25]),
 }
-# A rate loop of P alone behind motors with a lag is no compact model's: neither right nor wrong.
+# A rate loop of P alone behind motors with a lag, and a drag of each axis by itself (a share of 1), are no compact
+# model's: neither right nor wrong.
 OWN = {"rate_delay", "yaw_delay", "rate_second_order", "yaw_second_order", "rate_slew_limit", "yaw_slew_limit",
-       "mixer_room", "mixer_thrust_loss"}
+       "mixer_room", "mixer_thrust_loss", "axis_drag"}
 
 
 def parameters(cause, size):
@@ -141,7 +142,8 @@ def main():
     with open(args.out, "a", newline="") as file:
         lines = csv.writer(file, lineterminator="\n")
         if new:
-            lines.writerow(["cause", "size", "seed", "seconds", "named", "suspected", "verdict", "right_first", "wrong"])
+            lines.writerow(["cause", "size", "seed", "seconds", "named", "suspected", "verdict", "right_first", "wrong",
+                            "axis_share"])
         for cause, (right, sizes) in CAUSES.items():
             if args.only not in (None, cause):
                 continue
@@ -158,8 +160,11 @@ def main():
                 # Another mass is thrust that moved against the base vehicle, named or not.
                 moved = any(d["parameter"].startswith("thrust over mass") for d in said["drift"])
                 first = named[0]["effect"] in right if named else cause == "load" and moved
+                shares = [f["parameters"]["share"] for f in said["findings"]
+                          if f["effect"] == "axis_drag" and f["status"] != "suspected"]
+                share = "".join("{value:.3f} ({low:.3f} to {high:.3f})".format(**s) for s in shares)
                 lines.writerow([cause, size, seed, args.seconds, " ".join(f["effect"] for f in named),
-                                " ".join(suspected), said["verdict"], int(first), " ".join(wrong)])
+                                " ".join(suspected), said["verdict"], int(first), " ".join(wrong), share])
                 file.flush()
 
 

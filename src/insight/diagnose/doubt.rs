@@ -1,7 +1,9 @@
 //! What puts a finding in doubt beyond the structure that is left: it does not pay on unseen flight, another one
 //! cancels it, or attitude and velocity do not show what a sensor is said to have.
 
+mod alone;
 mod cancel;
+mod clock;
 mod kinematic;
 
 use super::finding::{Finding, Status};
@@ -16,6 +18,11 @@ pub fn all(fitted: &FittedSelection, findings: &mut [Finding]) {
     cancelling(fitted, findings);
     unshown(fitted, findings);
     unpaid(fitted, findings);
+    for (i, card) in named(fitted, findings) {
+        if card.role == Role::ClockFast && clock::is_unshown(fitted, card) {
+            findings[i].suspect("thrust does not show it: the rates' response may slow instead".into());
+        }
+    }
 }
 
 /// The cards of findings that are named and fitted, with their places among the findings.

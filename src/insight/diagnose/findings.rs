@@ -14,7 +14,7 @@ use super::numbers::span;
 use super::select::Added;
 use super::structure::{PLACE, Structure};
 use crate::insight::criteria::material::{LEAST_IMPACT, LEAST_SENSOR_IMPACT, MATERIAL_BIAS};
-use crate::model::effects::{self, EffectKind, ResidualChannel, Role};
+use crate::model::effects::{self, EffectKind, ResidualChannel, Role, are_rivals};
 
 /// What was found.
 pub struct Judgement {
@@ -64,6 +64,7 @@ impl Judgement {
         for finding in self.findings.iter_mut().filter(|f| f.status == Status::Named) {
             open(finding, &all, &self.unexplained);
         }
+        self.unexplained.iter().for_each(|left| family(&mut self.findings, left.channel));
         // A move of the base explains nothing where its channel still has structure.
         let open = self.unexplained.iter().any(|s| s.channel == "specific force z");
         for finding in self.findings.iter_mut().filter(|f| open && f.explained.contains_key(MOVES)) {
@@ -80,6 +81,25 @@ fn open(finding: &mut Finding, all: &[Finding], unexplained: &[Structure]) {
     let same = |id: &&str| effects::card(id).is_some_and(|rival| rival.writes == card.writes);
     if unexplained.iter().any(|s| s.channel == finding.channel) {
         card.rivals.iter().copied().filter(same).filter(|id| !found(id)).for_each(|id| finding.or(id));
+    }
+}
+
+/// Where structure is left in `channel`, of rivals that both explain some of it one has the name, and the other may
+/// make up for its form.
+fn family(findings: &mut [Finding], channel: &str) {
+    let share = |f: &Finding| f.explained.get(channel).copied().filter(|_| f.status != Status::Suspected);
+    let mut order: Vec<(usize, f64)> = findings.iter().enumerate().filter_map(|(i, f)| Some((i, share(f)?))).collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    for (at, &(larger, _)) in order.iter().enumerate() {
+        for &(smaller, _) in &order[at + 1..] {
+            let [Some(a), Some(b)] = [larger, smaller].map(|i| effects::card(findings[i].effect)) else { continue };
+            let sure = [larger, smaller].iter().all(|&i| findings[i].status != Status::Suspected);
+            if sure && are_rivals(a, b) && a.writes == b.writes {
+                let why = format!("structure remains in {channel}: it may make up for the form of {}", a.name);
+                findings[smaller].suspect(why);
+                findings[larger].or(b.id);
+            }
+        }
     }
 }
 
@@ -119,4 +139,24 @@ fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_rivals_beside_structure_one_has_the_name() {
+        let said = |id: &str, share: f64| {
+            let card = effects::card(id).expect("listed");
+            let explained = [("specific force z", share)].into();
+            Finding { status: Status::Named, members: vec![card.id], explained, ..Finding::of(card) }
+        };
+        let mut findings = [said("axis_drag", 0.34), said("rotor_drag", 0.3), said("axial_inflow", 0.41)];
+        family(&mut findings, "specific force x");
+        assert!(findings.iter().all(|f| f.status == Status::Named), "nothing of theirs is there");
+        family(&mut findings, "specific force z");
+        assert_eq!(findings.each_ref().map(|f| f.status), [Status::Suspected, Status::Named, Status::NamedSet]);
+        assert_eq!(findings[2].members, ["axial_inflow", "axis_drag"]);
+    }
 }

@@ -34,14 +34,15 @@ pub fn judge(fitted: &FittedSelection, added: &Added) -> Judged {
     let (x, change) = without(fitted, card);
     let point = fitted.point();
     let replicated = stretches(fitted, card);
-    let why = (!replicated.evident()).then(|| {
-        if replicated.count < AGREEING_STRETCHES.get() {
-            format!("only {:.0} stretches of flight agree", replicated.count)
-        } else {
-            "its size is not sure enough".into()
-        }
-    });
-    let (explained, channel) = explained(fitted, card, &change);
+    let Explained { shares: explained, channel, elsewhere } = explained(fitted, card, &change);
+    let why = if replicated.count < AGREEING_STRETCHES.get() && !replicated.evident() {
+        Some(format!("only {:.0} stretches of flight agree", replicated.count))
+    } else if !replicated.evident() {
+        Some("its size is not sure enough".into())
+    } else {
+        // What the base does better beside it may be an error of the base.
+        (elsewhere && explained.is_empty()).then(|| "all that it explains is in what it does not change".into())
+    };
     let finding = Finding {
         status: match (&why, added.ties.is_empty()) {
             (Some(_), _) => Status::Suspected,
@@ -62,30 +63,42 @@ pub fn judge(fitted: &FittedSelection, added: &Added) -> Judged {
     Judged { finding, material, bounded, change }
 }
 
-/// Shares of the residual power of its channels that go with an effect, which changes the prediction by `change`; and
-/// the channel of the largest.
-fn explained(
-    fitted: &FittedSelection,
-    card: &Card,
-    change: &ChannelValues,
-) -> (BTreeMap<&'static str, f64>, &'static str) {
-    let residual = &fitted.point().residual;
+/// What goes with an effect.
+struct Explained {
+    /// Shares of the residual power of the channels that the effect itself changes.
+    shares: BTreeMap<&'static str, f64>,
+    /// Its channel of the largest.
+    channel: &'static str,
+    /// Whether other channels gain, by what the base does better beside it.
+    elsewhere: bool,
+}
+
+/// What goes with an effect, which changes the prediction by `change`.
+fn explained(fitted: &FittedSelection, card: &Card, change: &ChannelValues) -> Explained {
+    let point = fitted.point();
+    let residual = &point.residual;
     let power = |v: &[f64]| mean(&v.iter().map(|x| x * x).collect::<Vec<_>>());
-    let mut explained = BTreeMap::new();
-    let mut most = (0.0, "");
-    // What other channels gain is the base's, which is free to serve them.
+    let own = fitted.places(card);
+    let changes = |c: usize| own.is_empty() || own.iter().any(|&i| !point.white[i][c].is_empty());
+    let mut out = Explained { shares: BTreeMap::new(), channel: "", elsewhere: false };
+    let mut most = 0.0;
+    // What channels of another kind gain is the base's, which is free to serve them.
     let known = |c: &usize| !residual[*c].is_empty() && !change[*c].is_empty() && card.channels.contains(&kind(*c));
     for c in (0..CHANNELS).filter(known) {
         let before: Vec<f64> = residual[c].iter().zip(&change[c]).map(|(r, d)| r + d).collect();
         let share = 1.0 - power(&residual[c]) / power(&before).max(1e-300);
-        if share > EXPLAINS_ANYTHING.get() {
-            explained.insert(NAMES[c].0, share);
+        if !changes(c) {
+            out.elsewhere |= share > EXPLAINS_ANYTHING.get();
+            continue;
         }
-        if share > most.0 || most.1.is_empty() {
-            most = (share, NAMES[c].0);
+        if share > EXPLAINS_ANYTHING.get() {
+            out.shares.insert(NAMES[c].0, share);
+        }
+        if share > most || out.channel.is_empty() {
+            (most, out.channel) = (share, NAMES[c].0);
         }
     }
-    (explained, most.1)
+    out
 }
 
 /// Change of the prediction that the effect makes, by channel, beside what the other numbers could take over, in

@@ -72,6 +72,7 @@ pub const CATALOGUE: &[Entry] = &[
     entry_of("gusts", "sigma", "m/s2", 0.2, 1.0, false),
     entry_of("imu_lever_arm", "length", "m", 0.005, 0.03, false),
     entry_of("imu_misalignment", "angle", "rad", 0.3 * DEG, 4.0 * DEG, false),
+    entry_of("accel_misalignment", "angle", "rad", 0.6 * DEG, 3.0 * DEG, false),
     entry_of("accel_bias", "length", "m/s2", 0.05, 0.4, false),
     entry_of("accel_scale", "scale", "", 0.005, 0.03, true),
     entry_of("gyro_bias", "length", "rad/s", 0.006, 0.02, false),

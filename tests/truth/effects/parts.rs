@@ -35,7 +35,9 @@ pub fn of(entry: &Entry, size: f64, vehicle: &Vehicle, rng: &mut StdRng) -> Part
             let part = |name, share: f64| Value { name, value: size * share, unit: "m/s", against: size.abs() };
             known(vec![part("wx", east), part("wy", north)])
         }
-        "imu_lever_arm" | "imu_misalignment" => known(vector(["rx", "ry", "rz"], entry, size, rng)),
+        "imu_lever_arm" | "imu_misalignment" | "accel_misalignment" => {
+            known(vector(["rx", "ry", "rz"], entry, size, rng))
+        }
         "accel_bias" | "gyro_bias" => known(vector(["x", "y", "z"], entry, size, rng)),
         "weak_motor" => {
             let [x, y, z] = WEAK[rng.random_range(0..4)];

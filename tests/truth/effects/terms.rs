@@ -110,6 +110,8 @@ pub struct Terms {
     pub lever: Vector3<f64>,
     /// Rotation vector that measured vectors are turned by.
     pub misalignment: Vector3<f64>,
+    /// The same of the accelerometer alone.
+    pub accel_misalignment: Vector3<f64>,
     pub accel_bias: Vector3<f64>,
     pub accel_scale: f64,
     pub gyro_bias: Vector3<f64>,
@@ -174,6 +176,7 @@ impl Terms {
             "gusts" => self.gusts = Some([get("sigma"), get("tau")]),
             "imu_lever_arm" => self.lever = vector(["rx", "ry", "rz"]),
             "imu_misalignment" => self.misalignment = vector(["rx", "ry", "rz"]),
+            "accel_misalignment" => self.accel_misalignment = vector(["rx", "ry", "rz"]),
             "accel_bias" => self.accel_bias = vector(["x", "y", "z"]),
             "accel_scale" => self.accel_scale = get("scale"),
             "gyro_bias" => self.gyro_bias = vector(["x", "y", "z"]),

@@ -145,7 +145,8 @@ impl Sensors {
             let faster = inner::body_acceleration(craft, &change, terms);
             force += faster.cross(&terms.lever) + w.cross(&w.cross(&terms.lever));
         }
-        force = UnitQuaternion::from_scaled_axis(terms.misalignment) * force * (1.0 + terms.accel_scale);
+        let turned = [terms.accel_misalignment, terms.misalignment].map(UnitQuaternion::from_scaled_axis);
+        force = turned[1] * (turned[0] * force) * (1.0 + terms.accel_scale);
         let shaken = terms.rectification * craft.share().powi(2);
         force += terms.accel_bias + Vector3::new(RECTIFIED_X * shaken, 0.0, shaken);
         let shaking = ACCELEROMETER[0] * (1.5 + 0.5 * craft.u);

@@ -39,7 +39,7 @@ pub fn specific_force(airframe: &Airframe, faults: &Faults, m: &Motion) -> Vecto
     let v = m.attitude.inverse() * (m.velocity - wind(faults, &m.position, m.time));
     let thrust = density * m.thrust * lasting(faults, m) / mass;
     let mut force = Vector3::new(m.ringing, 0.0, inflow(faults, thrust, &v, m));
-    force += body(airframe, &v) * (density / mass);
+    force += body(airframe, faults, &v) * (density / mass);
     force + extra(faults, thrust, &v)
 }
 
@@ -77,10 +77,14 @@ fn inflow(faults: &Faults, thrust: f64, v: &Vector3<f64>, m: &Motion) -> f64 {
     out * (1.0 + faults.of("ground_exponential") * (-height / 0.25).exp())
 }
 
-/// Drag of the body without anything hidden, N: along the flow, by the silhouette.
-fn body(airframe: &Airframe, v: &Vector3<f64>) -> Vector3<f64> {
+/// Drag of the body, N: along the flow, by the silhouette, as far as nothing is hidden.
+fn body(airframe: &Airframe, faults: &Faults, v: &Vector3<f64>) -> Vector3<f64> {
     let k = Vector3::from(airframe.drag());
-    -v * k.component_mul(v).norm()
+    let (speed, flat) = (v.norm(), Vector3::new(v.x, v.y, 0.0));
+    let along = -v * k.component_mul(v).norm();
+    let round = flat * (k.component_mul(&flat).norm() / flat.norm().max(1e-9)) + Vector3::z() * (k.z * v.z);
+    let (some, much) = (faults.of("axis_round"), faults.of("axis_fast") * speed / (speed + 5.0));
+    along + (-round * speed - along) * some + (-k.component_mul(v) * speed - along) * much
 }
 
 /// What is hidden in drag and lift, m/s2.

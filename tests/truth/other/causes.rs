@@ -44,6 +44,9 @@ pub const KINDS: &[Kind] = &[
     // Forwards only (1/m): with the square, and with the whole speed.
     kind("nose_drag", &["drag_asymmetry"], 0.004, 0.015),
     kind("nose_speed", &["drag_asymmetry"], 0.004, 0.015),
+    // Drag of each axis by itself, as a share: of the flat plane and the vertical alone, and the faster the more.
+    kind("axis_round", &["axis_drag"], 0.4, 1.0),
+    kind("axis_fast", &["axis_drag"], 0.6, 1.4),
     // Lift (1/m, m^-1/2): of a fuselage along x alone, and with a lower power of the speed.
     kind("plate_lift", &["body_lift"], 0.006, 0.03),
     kind("wing_lift", &["translational_lift"], 0.006, 0.03),
@@ -84,7 +87,7 @@ pub const KINDS: &[Kind] = &[
     // Sensors: times in s, angles in rad, lengths in m, shares, m/s2, rad/s.
     kind("imu_late", &["stream_offset", "imu_late"], 0.004, 0.012),
     kind("gyro_filter", &["stream_offset"], 0.002, 0.006),
-    kind("accel_tilt", &["imu_misalignment"], 0.015, 0.05),
+    kind("accel_tilt", &["accel_misalignment", "imu_misalignment"], 0.015, 0.05),
     kind("imu_tilt", &["imu_misalignment"], 0.015, 0.05),
     kind("lever_soft", &["imu_lever_arm"], 0.015, 0.05),
     kind("accel_warm", &["accel_bias"], 0.15, 0.4),
