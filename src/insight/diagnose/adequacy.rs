@@ -8,7 +8,7 @@ use super::structure::Structure;
 use crate::base::stats::mean;
 use crate::insight::criteria::complete::{
     ABOUT_SHARE, ADEQUATE_RATIO, CHANGING_SHARE, LEFT_OF_EXPLAINED, LEFT_OF_NOISE, LINED_UP_SHARE, MEMORY_RATIO,
-    SMALL_BESIDE,
+    REMEMBERED, SMALL_BESIDE,
 };
 use crate::insight::criteria::evident::EXPLAINS_ANYTHING;
 use crate::insight::criteria::material::{IDLE_FORCE, IDLE_RATE, IDLE_VOLTAGE};
@@ -35,6 +35,12 @@ pub fn unexplained(structure: &[Structure], findings: &[Finding], selection: &Se
         left > idle && left > LEFT_OF_NOISE.get() * s.rms && left > LEFT_OF_EXPLAINED.get() * explained
     };
     structure.iter().filter(one).cloned().collect()
+}
+
+/// Whether the forms of what was found are not the vehicle's: most of what they leave of a force is known before.
+pub fn remembers(left: &Structure) -> bool {
+    let known = left.coloured_rms.max(left.structure_rms);
+    left.channel.starts_with("specific force") && known > IDLE_FORCE.get() && known > REMEMBERED.get() * left.rms
 }
 
 /// Why a finding is no more than suspected beside what is left, if so.

@@ -64,7 +64,9 @@ impl Judgement {
         for finding in self.findings.iter_mut().filter(|f| f.status == Status::Named) {
             open(finding, &all, &self.unexplained);
         }
-        self.unexplained.iter().for_each(|left| family(&mut self.findings, left.channel));
+        for left in structure.iter().filter(|s| adequacy::remembers(s)) {
+            family(&mut self.findings, left.channel);
+        }
         // A move of the base explains nothing where its channel still has structure.
         let open = self.unexplained.iter().any(|s| s.channel == "specific force z");
         for finding in self.findings.iter_mut().filter(|f| open && f.explained.contains_key(MOVES)) {
@@ -84,7 +86,7 @@ fn open(finding: &mut Finding, all: &[Finding], unexplained: &[Structure]) {
     }
 }
 
-/// Where structure is left in `channel`, of rivals that both explain some of it one has the name, and the other may
+/// Where `channel` still has a memory, of rivals that both explain some of it one has the name, and the other may
 /// make up for its form.
 fn family(findings: &mut [Finding], channel: &str) {
     let share = |f: &Finding| f.explained.get(channel).copied().filter(|_| f.status != Status::Suspected);

@@ -16,7 +16,7 @@ impl Effect for TranslationalLift {
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
         signature: "vertical specific force grows with the square of the speed across the rotors",
-        rivals: &["body_lift"],
+        rivals: &["body_lift", "axial_inflow"],
         manoeuvre: ("level passes from slow to fast", &["forward", "backward", "left", "right"]),
         ..Card::BLANK
     };
