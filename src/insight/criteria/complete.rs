@@ -15,8 +15,8 @@ criteria! {
     ADEQUATE_RATIO = 1.5, Assumed(UNRECORDED);
     /// What has a memory, where it is unexplained, may be so many times what a finding explains.
     MEMORY_RATIO = 3.0, Assumed("residuals of measured flights are never white; what else was tried is not on record");
-    /// Share of the root mean square of what is left of a force that is known before, from which on the forms of what was
-    /// found are not the vehicle's.
+    /// Share of the root mean square of what is left of a force that is known before, from which on the forms of what
+    /// was found are not the vehicle's.
     REMEMBERED = 0.5, Assumed("0.7 to 0.8 beside inflow by momentum theory, 0.3 and less where the forms are right");
     /// Share of what is unexplained that goes with time from which on a finding is not the same early and late.
     CHANGING_SHARE = 0.2, Assumed(UNRECORDED);

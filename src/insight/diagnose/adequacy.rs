@@ -1,5 +1,6 @@
 //! Whether what was found is enough: what structure is left, and which findings are in doubt beside it.
 
+use super::cause::MOVES;
 use super::channels::NAMES;
 use super::finding::Finding;
 use super::oscillation;
@@ -68,7 +69,8 @@ pub fn doubt(
     // Where the largest cause has not quite the right form, small ones make up for it.
     let odds = |f: &Finding| f.explained.get(finding.channel).map_or(0.0, |s| s / (1.0 - s.min(0.999_999)));
     let largest = findings.iter().max_by(|a, b| odds(a).total_cmp(&odds(b)));
-    if let Some(largest) = largest.filter(|l| odds(finding) < SMALL_BESIDE.get() * odds(l))
+    let small = |l: &&Finding| !finding.explained.contains_key(MOVES) && odds(finding) < SMALL_BESIDE.get() * odds(l);
+    if let Some(largest) = largest.filter(small)
         && unexplained.iter().any(|s| s.channel == finding.channel)
     {
         return Some(format!("small beside {}, where structure remains: it may make up for its form", largest.name));

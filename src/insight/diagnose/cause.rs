@@ -1,12 +1,13 @@
 //! An effect that looks like nothing but a move of thrust and drag against the base vehicle: the compact model takes it
 //! up without trace, and only the base tells.
 
+use super::channels::FORCE;
 use super::finding::{Finding, Status, Value};
 use super::fit::{covariance, fit};
 use super::fitted::FittedSelection;
 use super::numbers::{DRAG, THRUST, span};
 use super::problem::ChannelValues;
-use crate::base::stats::NORMAL_95;
+use crate::base::stats::{NORMAL_95, mean};
 use crate::insight::criteria::drifted::{CAUSE_ACCOUNTS, CAUSE_TIE, CAUSE_TIE_SHARE, MOVED_DEVIATIONS};
 use crate::insight::criteria::material::MATERIAL_SIZE;
 use crate::insight::estimate::gram::Grams;
@@ -130,9 +131,16 @@ fn finding(fitted: &FittedSelection, best: &Account, near: Vec<&'static str>) ->
         parameters: BTreeMap::from([(p.name.to_string(), value)]),
         stretches: (size / sd.max(1e-300)).powi(2).min(fitted.problem.blocks as f64),
         explained: BTreeMap::from([(MOVES, best.share)]),
-        impact: size.abs(),
+        impact: pushes(fitted, card, size),
         ..Finding::of(card)
     })
+}
+
+/// By how much an effect of that size changes the vertical specific force, root mean square: m/s after a second of it.
+fn pushes(fitted: &FittedSelection, card: &Card, size: f64) -> f64 {
+    let point = &fitted.selection.point;
+    let change = fitted.problem.secant(&point.state, &point.x, &[(span(card).start, size)], 1.0);
+    mean(&change[FORCE + 2].iter().map(|d| d * d).collect::<Vec<_>>()).sqrt()
 }
 
 /// Size and standard deviation of an effect that takes the place of all moves of thrust and drag, near `size`.

@@ -67,8 +67,8 @@ impl Judgement {
         for left in structure.iter().filter(|s| adequacy::remembers(s)) {
             family(&mut self.findings, left.channel);
         }
-        // A move of the base explains nothing where its channel still has structure.
-        let open = self.unexplained.iter().any(|s| s.channel == "specific force z");
+        // A move of the base explains nothing where what is left of its channel is no noise.
+        let open = structure.iter().any(|s| s.channel == "specific force z" && adequacy::remembers(s));
         for finding in self.findings.iter_mut().filter(|f| open && f.explained.contains_key(MOVES)) {
             finding.suspect("structure remains in specific force z".into());
         }
@@ -146,19 +146,23 @@ fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::effects::Card;
 
     #[test]
     fn of_rivals_beside_structure_one_has_the_name() {
-        let said = |id: &str, share: f64| {
-            let card = effects::card(id).expect("listed");
+        let pushes = || effects::MODEL.into_iter().filter(|card| card.channels == [ResidualChannel::Force]);
+        let rivals = |a: &Card, b: &Card| are_rivals(a, b) && a.writes == b.writes;
+        let (a, b) = pushes().flat_map(|a| pushes().map(move |b| (a, b))).find(|(a, b)| rivals(a, b)).expect("rivals");
+        let other = pushes().find(|c| c.id != a.id && c.id != b.id && !rivals(a, c) && !rivals(b, c)).expect("another");
+        let said = |card: &'static Card, share: f64| {
             let explained = [("specific force z", share)].into();
             Finding { status: Status::Named, members: vec![card.id], explained, ..Finding::of(card) }
         };
-        let mut findings = [said("axis_drag", 0.34), said("rotor_drag", 0.3), said("axial_inflow", 0.41)];
+        let mut findings = [said(a, 0.34), said(other, 0.3), said(b, 0.41)];
         family(&mut findings, "specific force x");
         assert!(findings.iter().all(|f| f.status == Status::Named), "nothing of theirs is there");
         family(&mut findings, "specific force z");
         assert_eq!(findings.each_ref().map(|f| f.status), [Status::Suspected, Status::Named, Status::NamedSet]);
-        assert_eq!(findings[2].members, ["axial_inflow", "axis_drag"]);
+        assert_eq!(findings[2].members, [b.id, a.id]);
     }
 }
