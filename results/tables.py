@@ -174,7 +174,7 @@ def other_truth():
     """The third truth's logs of 100 s, by seed and build."""
     builds = {}
     for r in rows("other-truth"):
-        if r["seed"] in ("21", "22"):
+        if r["seed"] in ("21", "22", "24", "25"):
             builds.setdefault(f"seed {r['seed']}, build {r['build']}", []).append(r)
     share = lambda of, said: wilson(sum(map(said, of)), len(of))
     hidden = lambda of: [r for r in of if r["group"] in ("one", "two")]
