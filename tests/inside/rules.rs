@@ -92,8 +92,8 @@ fn what_two_delays_have_in_common_may_be_the_links() {
     assert!(["link_delay", "imu_late"].iter().all(|id| thrust.members.contains(id)), "{:?}", thrust.members);
 }
 
-/// What is said of log `number` of the benchmark's `--tier other --seed SEED --seconds 100`, at its noise and rate, with
-/// the cause `id` of that size.
+/// What is said of log `number` of the benchmark's `--tier other --seed SEED --seconds 100`, at its noise and rate,
+/// with the cause `id` of that size.
 fn said_of([seed, number]: [u64; 2], noise: f64, imu_hz: f64, (id, size): (&str, f64)) -> Diagnosis {
     let of = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ number.wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let mut rng = StdRng::seed_from_u64(of);
