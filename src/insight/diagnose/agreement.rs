@@ -3,6 +3,7 @@
 use super::channels::{PUSH, TURN};
 use super::problem::{ChannelValues, Problem};
 use super::whiten::Whitener;
+use std::ops::Range;
 
 /// Whitened squares of what is left in turns and pushes.
 pub fn squares(problem: &Problem, whitener: &Whitener, residual: &ChannelValues) -> f64 {
@@ -12,5 +13,10 @@ pub fn squares(problem: &Problem, whitener: &Whitener, residual: &ChannelValues)
 
 /// The turns and pushes of `values` alone.
 pub fn kinematic(values: &ChannelValues) -> ChannelValues {
-    std::array::from_fn(|c| if (TURN..PUSH + 3).contains(&c) { values[c].clone() } else { Vec::new() })
+    only(values, TURN..PUSH + 3)
+}
+
+/// These channels of `values` alone.
+pub fn only(values: &ChannelValues, channels: Range<usize>) -> ChannelValues {
+    std::array::from_fn(|c| if channels.contains(&c) { values[c].clone() } else { Vec::new() })
 }

@@ -1,5 +1,5 @@
 //! What puts a finding in doubt beyond the structure that is left: it does not pay on unseen flight, another one
-//! cancels it, or attitude and velocity do not show what a sensor is said to have.
+//! cancels it, attitude and velocity do not show what a sensor is said to have, or thrust does not show a clock.
 
 mod alone;
 mod cancel;
@@ -18,6 +18,10 @@ pub fn all(fitted: &FittedSelection, findings: &mut [Finding]) {
     cancelling(fitted, findings);
     unshown(fitted, findings);
     unpaid(fitted, findings);
+    untimed(fitted, findings);
+}
+
+fn untimed(fitted: &FittedSelection, findings: &mut [Finding]) {
     for (i, card) in named(fitted, findings) {
         if card.role == Role::ClockFast && clock::is_unshown(fitted, card) {
             findings[i].suspect("thrust does not show it: the rates' response may slow instead".into());

@@ -3,6 +3,7 @@
 
 use super::alone::Alone;
 use crate::insight::criteria::unseen::{KINEMATIC_DEVIATIONS, KINEMATIC_SHARE};
+use crate::insight::diagnose::agreement::only;
 use crate::insight::diagnose::channels::FORCE;
 use crate::insight::diagnose::fitted::FittedSelection;
 use crate::insight::diagnose::problem::ChannelValues;
@@ -11,9 +12,7 @@ use crate::model::effects::Card;
 /// Whether the forces by themselves leave the skew `card` in doubt: they do not show it beyond chance, or less of it
 /// than all channels together have.
 pub fn is_unshown(fitted: &FittedSelection, card: &Card) -> bool {
-    let forces = |values: &ChannelValues| -> ChannelValues {
-        std::array::from_fn(|c| if (FORCE..FORCE + 3).contains(&c) { values[c].clone() } else { Vec::new() })
-    };
+    let forces = |values: &ChannelValues| only(values, FORCE..FORCE + 3);
     let unsure = |(share, sd): (f64, f64)| {
         let chance = KINEMATIC_DEVIATIONS.get() * sd;
         share < chance || share + chance < KINEMATIC_SHARE.get()
