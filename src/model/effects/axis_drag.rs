@@ -1,6 +1,6 @@
 //! Drag of each body axis by itself, f_i = -k_i |v| v_i (k_i in 1/m), in the place of the ellipsoid's, which is along
-//! the flow: flow that comes askew pushes to the side as well. It is the quadratic drag with a diagonal matrix that most
-//! simulators have; `share` says how far the vehicle is from the one toward the other, at the same k_i.
+//! the flow: flow that comes askew pushes to the side as well. It is the quadratic drag with a diagonal matrix that
+//! most simulators have; `share` says how far the vehicle is from the one toward the other, at the same k_i.
 
 use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::{Real, build};
