@@ -117,6 +117,15 @@ impl Vehicle {
         LIBRARY.open(name)?.decode()
     }
 
+    /// The same of another mass, kg: thrust and the area that drags are in proportion to it, so that it flies alike.
+    #[must_use]
+    pub fn with_mass(mut self, mass_kg: f64) -> Self {
+        let ratio = mass_kg / self.mass_kg;
+        self.thrust_n = self.thrust_n.map(|c| c * ratio);
+        self.drag.semi_axes_m = self.drag.semi_axes_m.map(|axis| axis * ratio.sqrt());
+        Self { mass_kg, ..self }
+    }
+
     /// Time constants of roll, pitch, yaw and thrust, s.
     pub fn time_constants(&self) -> [f64; 4] {
         let TimeConstants { roll, pitch, yaw, thrust } = self.time_constant_s;

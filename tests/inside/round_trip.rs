@@ -5,6 +5,7 @@ use racer::insight::identify::estimate::Estimated;
 use racer::insight::identify::result::Identification;
 use racer::insight::identify::{IdentifyOptions, identify};
 use racer::insight::quality::{Severity, check};
+use racer::model::dynamics::drag::ellipsoid;
 use racer::model::vehicle::Vehicle;
 use std::collections::BTreeMap;
 
@@ -105,6 +106,23 @@ fn a_random_vehicle_is_found_again() {
         assert!(read.identified.unwrap().interval.contains_key("time_constant_s.roll"));
     }
     assert!(4 * inside >= 3 * all, "{inside} of {all} intervals hold");
+}
+
+/// What a flight without velocity cannot tell is lent in proportion to the mass: drag of a vehicle of 1 kg on one of 50
+/// g was thirty times too much, and its thrust curve did not predict.
+#[test]
+fn a_light_vehicle_is_lent_no_heavy_ones_drag() {
+    let mut log = truth::fly(&truth::Vehicle::draw(5), 5, 60.0, 1.0);
+    log.odometry.rows.iter_mut().for_each(|row| row[7..].fill(f64::NAN));
+    let of = |mass_kg| {
+        let options = IdentifyOptions { mass_kg: Some(mass_kg), ..options() };
+        identify(vec![check(&log)], &options, &mut |_, _| ()).vehicle
+    };
+    let (light, heavy) = (of(0.05), of(1.0));
+    assert!(heavy.identified.as_ref().unwrap().assumed.contains_key("drag"));
+    let per_mass = |v: &Vehicle| [v.thrust_at(1.0, v.battery.full_v), ellipsoid(&v.drag)[0]].map(|x| x / v.mass_kg);
+    let ratios: Vec<f64> = per_mass(&light).iter().zip(per_mass(&heavy)).map(|(a, b)| a / b).collect();
+    assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 1e-6), "{ratios:?}");
 }
 
 /// `cargo test --test inside -- --ignored round_trip::write`: a log to try `racer identify` on, and the vehicle that

@@ -293,3 +293,23 @@ fn a_vehicle_that_fails_in_a_third_is_not_written() {
     let why = diagnosis.not_extended.unwrap_or_default();
     assert!(extended.is_err() && why.contains("% worse"), "{why}");
 }
+
+/// Rule 8: identified only in what the flights show. A racing line and a flight of manoeuvres do not tell the thrust at
+/// each other's throttles. A cubic was fitted all the same: by what it said of the other flight no vehicle was written,
+/// and with seed 63 the lift, whose size is the same in both, was no more than suspected.
+#[test]
+fn flights_that_do_not_tell_the_thrust_still_make_a_vehicle() {
+    for seed in [61, 63] {
+        let vehicle = Vehicle::draw(seed);
+        let lift = Hidden::sized("body_lift", 0.05, &vehicle, &mut StdRng::seed_from_u64(61));
+        let flown = |style, seed| {
+            let setting = Setting { style, seed, seconds: 30.0, ..SETTING };
+            check(&fly(&vehicle, std::slice::from_ref(&lift), &setting))
+        };
+        let logs = vec![flown(Style::Race, 61), flown(Style::Excited, 62)];
+        let Diagnosed { diagnosis, vehicle: extended, .. } = diagnose(logs, &vehicle.in_racer(), &mut |_, _| ());
+        assert_eq!(names(&diagnosis), ["body_lift"], "seed {seed}");
+        let [found, hidden] = [extended.unwrap().effects.sizes["body_lift"]["k"], lift.get("k")];
+        assert!((found / hidden - 1.0).abs() < 0.1, "seed {seed}: {found} for {hidden}");
+    }
+}

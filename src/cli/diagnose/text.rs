@@ -3,6 +3,7 @@
 use crate::cli::columns;
 use crate::insight::diagnose::accident::LeftOut;
 use crate::insight::diagnose::finding::{Diagnosis, Finding, Status};
+use crate::insight::diagnose::gain;
 use crate::present::report::digits;
 
 /// What is wrong, why, what it is worth, what to fly next.
@@ -55,7 +56,7 @@ pub fn text(d: &Diagnosis) -> String {
         });
         out.push(columns::table(&["open loop, after", "m/s off", "m off", "deg off", "starts"], rows.collect(), 1..5));
     }
-    out.extend(captured(d));
+    out.extend(d.captured.map(gain::words));
     if let Some(why) = &d.not_extended {
         out.push(format!("no extended vehicle: {why}"));
     }
@@ -75,16 +76,6 @@ fn left_out(d: &Diagnosis) -> Option<String> {
     };
     let all: Vec<String> = d.left_out.iter().map(one).collect();
     (!all.is_empty()).then(|| format!("left out, because something happened there: {}", all.join(", ")))
-}
-
-/// What was gained of what could be gained at most.
-fn captured(d: &Diagnosis) -> Option<String> {
-    let captured = d.captured?;
-    Some(if captured > 0.0 {
-        format!("{:.0} % of what a better model could gain on that flight was gained", 100.0 * captured)
-    } else {
-        "nothing of what a better model could gain on that flight was gained".into()
-    })
 }
 
 /// A value and its interval, with as many digits as the interval's width has a meaning for.

@@ -6,6 +6,8 @@ use crate::model::effects::ResidualChannel;
 pub const CHANNELS: usize = 13;
 pub const RATE: usize = 0;
 pub const FORCE: usize = 3;
+/// Specific force along the rotors' axis.
+pub const LIFT: usize = FORCE + 2;
 pub const TURN: usize = 6;
 pub const PUSH: usize = 9;
 pub const VOLTAGE: usize = 12;

@@ -9,7 +9,7 @@ mod kinematic;
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
 use super::numbers::span;
-use super::{skew, unseen};
+use super::{pays, skew, unseen};
 use crate::insight::criteria::unseen::{PAYS_DEVIATIONS, SAME_SKEW_SHARE};
 use crate::model::effects::{self, Card, Role, are_rivals};
 
@@ -71,7 +71,7 @@ fn unpaid(fitted: &FittedSelection, findings: &mut [Finding]) {
     cards.retain(|(_, card)| card.role != Role::CommandsLost && !followed(fitted, card));
     let places: Vec<Vec<usize>> = cards.iter().map(|(_, card)| fitted.places(card)).collect();
     for ((i, _), deviations) in
-        cards.into_iter().zip(unseen::pays(fitted, &unseen::parts(fitted.problem), &places, f64::INFINITY))
+        cards.into_iter().zip(pays::pays(fitted, &unseen::parts(fitted.problem), &places, f64::INFINITY))
     {
         if deviations < PAYS_DEVIATIONS.get() {
             findings[i].suspect("on flight that was not used for fitting it does not pay".into());

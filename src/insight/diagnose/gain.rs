@@ -89,6 +89,16 @@ pub fn measure(problem: &Problem, selection: &Selection, kept: &Selection) -> He
     }
 }
 
+/// What was gained of what could be gained at most, in words.
+pub fn words(captured: f64) -> String {
+    if captured >= 1.0 {
+        // No more than that: it may have learned nothing that holds there.
+        return "a regression that knows nothing of vehicles gains nothing beyond that on that flight".into();
+    }
+    let share = 100.0 * captured.max(0.0);
+    format!("{share:.0} % of what a regression that knows nothing of vehicles says could be gained on that flight")
+}
+
 fn channels(problem: &Problem, base: &FitPoint, extended: &FitPoint, out: &[bool]) -> BTreeMap<&'static str, Gain> {
     let mut all = BTreeMap::new();
     for c in 0..CHANNELS {

@@ -1,50 +1,77 @@
 //! What of a selection is kept: the extended vehicle's part, in which every name has to hold by itself.
 
-use super::channels::FORCE;
+use super::channels::{FORCE, LIFT, VOLTAGE};
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
-use super::numbers::{MAX_RATE, TAU};
+use super::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST};
 use super::problem::Problem;
 use super::replication::stretches;
 use super::select::Selection;
 use super::{shown, worse};
-use crate::model::effects::{self, Card, Role};
+use crate::base::check::Check;
+use crate::model::effects::{self, Card, MODEL, Role};
 
 /// What of the selection is kept: what is only suspected is no part of the extended vehicle, nor what is not sure
 /// without that, nor what makes unseen flight worse. With the reason where what is left is worse for all that.
 pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> (Selection, Option<String>) {
     let mut given: Vec<usize> = Vec::new();
     loop {
-        let suspected: Vec<&str> =
-            findings.iter().filter(|f| f.status == Status::Suspected).map(|f| f.effect).collect();
-        let kept = selection.without(problem, &suspected).with_given(problem, &given);
+        let kept = selection.without(problem, &left_out(selection, findings)).with_given(problem, &given);
         let fitted = FittedSelection::new(problem, &kept);
         if let Some(finding) = leaning(&fitted, findings) {
             finding.suspect("its size is not sure without what is only suspected".into());
             continue;
         }
-        let Some(worse) = worse::find(&fitted, &selection.base) else {
+        let worse = worse::find(&fitted, &selection.base);
+        // Before an effect is to blame, the vehicle's own numbers: flights need not tell them as well as the base does.
+        let told = match &worse {
+            Some(worse) => worse.given.then_some(worse.number),
+            None => problem.model.vehicle_at(&kept.point.x).check().is_err().then_some(LIFT),
+        };
+        let mut groups = told.into_iter().flat_map(|channel| [own(channel), like(channel)]);
+        let untold = groups.find(|group| group.iter().any(|k| kept.point.free.contains(k)));
+        if let Some(untold) = untold {
+            given.extend(untold);
+            continue;
+        }
+        let Some(worse) = worse else {
             return (kept, None);
         };
         let rise = format!("{} {:.0} % worse", worse.channel, 100.0 * worse.by);
         let blamed = worse.blamed.map(|card| card.id);
         let finding = findings.iter_mut().find(|f| Some(f.effect) == blamed && f.status != Status::Suspected);
         let Some(finding) = finding else {
-            // No effect does it: the flights do not tell the vehicle's own numbers.
-            let own = own(worse.number);
-            if own.clone().any(|k| kept.point.free.contains(&k)) {
-                given.extend(own);
-                continue;
-            }
             return (kept, Some(format!("on flight that was not used for fitting it predicts {rise}")));
         };
         finding.suspect(format!("on flight that was not used for fitting it makes {rise}"));
     }
 }
 
-/// The compact model's numbers that a rate follows its command by; nothing of other channels.
-fn own(channel: usize) -> impl Iterator<Item = usize> + Clone {
-    [TAU.start, MAX_RATE.start].into_iter().filter(move |_| channel < FORCE).map(move |start| start + channel)
+/// Effects of the selection that are no part of the extended vehicle's fit: what is suspected, and of the simulator's
+/// whatever is not named, such as what is too small to matter. What the sensors are off by stays with the flights.
+fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
+    let status = |card: &Card| findings.iter().find(|f| f.effect == card.id).map(|f| f.status);
+    let out = |card: &&'static Card| match status(card) {
+        Some(status) => status == Status::Suspected,
+        None => MODEL.iter().any(|of_vehicle| of_vehicle.id == card.id),
+    };
+    selection.added.iter().map(|a| a.card).filter(out).map(|card| card.id).collect()
+}
+
+/// The compact model's numbers of a channel: how a rate goes to its command, drag of an axis, thrust, discharge.
+fn own(channel: usize) -> Vec<usize> {
+    match channel {
+        VOLTAGE => vec![DISCHARGE],
+        LIFT => THRUST.collect(),
+        _ if channel < FORCE => vec![TAU.start + channel, MAX_RATE.start + channel],
+        _ => vec![DRAG.start + channel - FORCE],
+    }
+}
+
+/// Those of all channels of its kind: rates, or forces with the voltage.
+fn like(channel: usize) -> Vec<usize> {
+    let rates = |k: &usize| (TAU.start..TAU.end - 1).contains(k) || MAX_RATE.contains(k);
+    (0..=DISCHARGE).filter(|k| rates(k) == (channel < FORCE)).collect()
 }
 
 /// Sizes in the report are those of the extended vehicle. Lost commands are counted, and not fitted.

@@ -8,6 +8,7 @@ use super::numbers::span;
 use super::problem::{ChannelValues, Problem};
 use super::rank::{Reach, rank};
 use super::size::is_material;
+use super::told::told;
 use super::trial::{Trial, tied, try_best, try_these};
 use super::whiten::Whitener;
 use crate::insight::criteria::consistent::CLOCK_SKEW_SEEN;
@@ -82,9 +83,10 @@ pub struct Added {
 
 /// Adds effects until none is worth it.
 pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection {
-    let free = base_numbers(problem);
     watch("fitting the base", 0.1);
-    let mut search = Search::new(problem, &free);
+    let free = base_numbers(problem);
+    let mut search = Search::new(problem, free);
+    let free = search.point.free.clone();
     let mut reach = Vec::new();
     let most = MOST_EFFECTS.count();
     for round in 0..=most {
@@ -119,15 +121,19 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// The base alone, with the numbers `free`.
-    fn new(problem: &'a Problem, free: &[usize]) -> Self {
+    /// The base alone, with those of the numbers `free` that the flights tell.
+    fn new(problem: &'a Problem, free: Vec<usize>) -> Self {
         let base = &problem.model.base;
         let state = problem.predict(base);
         let plain = problem.residuals(&state);
         let whitener = Whitener::plain(&plain, &problem.rows);
         let skewed =
             super::skew::estimate(problem, &state, &plain).is_some_and(|skew| skew.abs() > CLOCK_SKEW_SEEN.get());
-        let point = if skewed { fit::stay } else { fit::fit }(problem, &whitener, base, free);
+        let point = if skewed {
+            fit::stay(problem, &whitener, base, &free)
+        } else {
+            fit::fit(problem, &whitener, base, &told(problem, &whitener, free))
+        };
         Search { problem, skewed, whitener, point, added: Vec::new(), pending: Vec::new(), found: Vec::new() }
     }
 

@@ -2,10 +2,10 @@
 //! fitted to.
 
 use super::fit::{FitPoint, costs};
-use super::fitted::FittedSelection;
 use super::numbers::BEGIN;
 use super::problem::Problem;
 use super::whiten::Whitener;
+use crate::insight::criteria::unseen::{WORSE_DEVIATIONS, WORSE_SHARE};
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use nalgebra::DMatrix;
@@ -29,7 +29,7 @@ pub fn parts(problem: &Problem) -> Vec<Vec<bool>> {
 }
 
 /// Whether a number is the voltage that a flight begins with.
-fn begins(problem: &Problem, k: usize) -> bool {
+pub fn begins(problem: &Problem, k: usize) -> bool {
     (BEGIN..BEGIN + problem.records.len()).contains(&k)
 }
 
@@ -73,48 +73,12 @@ pub fn deviations(differences: &[f64]) -> f64 {
     differences.iter().sum::<f64>() / differences.iter().map(|d| d * d).sum::<f64>().sqrt().max(1e-300)
 }
 
-/// How surely each of `effects` (the places of its numbers among the fitted ones) pays on unseen flight, in standard
-/// deviations, where each of `parts` in turn is unseen. No stretch tells more than `most` whitened squares, for or
-/// against.
-pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>], most: f64) -> Vec<f64> {
-    let (problem, point) = (fitted.problem, fitted.point());
-    let whitener = &fitted.selection.whitener;
-    let mut gained: Vec<Vec<f64>> = vec![Vec::new(); effects.len()];
-    for out in parts {
-        let x = without(problem, point, &fitted.grams, out);
-        let with = squares(problem, whitener, &x);
-        let gram = seen(&fitted.grams, out);
-        for (own, gained) in effects.iter().zip(&mut gained) {
-            let known = |cost: &[f64]| -> f64 { cost.iter().zip(out).filter(|(_, o)| !**o).map(|(c, _)| c).sum() };
-            let tried = removed(fitted, &gram, own, &x).map(|x| squares(problem, whitener, &x));
-            // What the others make of its absence is chosen by the flight that is known.
-            let [a, b] = tried;
-            let missing = if known(&a) <= known(&b) { a } else { b };
-            let unseen = (0..problem.blocks).filter(|&b| out[b]);
-            gained.extend(unseen.map(|b| (missing[b] - with[b]).clamp(-most, most)));
-        }
-    }
-    gained.iter().map(|differences| deviations(differences)).collect()
-}
-
-/// The numbers `x` without those at `own`: the others as they are, and the others with what they can take over.
-pub fn removed(fitted: &FittedSelection, gram: &DMatrix<f64>, own: &[usize], x: &[f64]) -> [Vec<f64>; 2] {
-    let point = fitted.point();
-    let numbers = &fitted.problem.model.numbers;
-    let mut plain = x.to_vec();
-    own.iter().for_each(|&i| plain[point.free[i]] = 0.0);
-    let mut moved = plain.clone();
-    let rest: Vec<usize> = fitted.rest(own).into_iter().filter(|&i| !begins(fitted.problem, point.free[i])).collect();
-    let prior: Vec<f64> = rest.iter().map(|&i| numbers[point.free[i]].trust.powi(-2)).collect();
-    if let Some(inner) = inverse(&Grams::pick(gram, &rest, &rest), &prior) {
-        let size = DMatrix::from_iterator(own.len(), 1, own.iter().map(|&i| x[point.free[i]]));
-        let taken = inner * Grams::pick(gram, &rest, own) * size;
-        for (row, &i) in rest.iter().enumerate() {
-            let (k, n) = (point.free[i], &numbers[point.free[i]]);
-            moved[k] = (moved[k] + taken[(row, 0)]).clamp(n.low, n.high);
-        }
-    }
-    [plain, moved]
+/// By which share the error rises from `before` to `after`, where it does beyond chance.
+pub fn rise(before: &[f64], after: &[f64]) -> Option<f64> {
+    let differences: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
+    let [before, after] = [before, after].map(|x| x.iter().sum::<f64>());
+    let by = (after / before.max(1e-300)).sqrt() - 1.0;
+    (by > WORSE_SHARE.get() && deviations(&differences) > WORSE_DEVIATIONS.get()).then_some(by)
 }
 
 #[cfg(test)]
@@ -125,5 +89,15 @@ mod tests {
     fn four_that_agree_are_two_deviations() {
         assert!((deviations(&[1.0; 4]) - 2.0).abs() < 1e-12);
         assert!(deviations(&[3.0, -1.0, -1.0, -1.0]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn worse_is_what_rises_everywhere_and_not_what_rises_once() {
+        let before = [1.0; 20];
+        assert!(rise(&before, &[1.1; 20]).is_some_and(|by| (by - 0.0488).abs() < 1e-3));
+        let mut once = before;
+        once[3] = 4.0;
+        assert!(rise(&before, &once).is_none());
+        assert!(rise(&before, &[1.01; 20]).is_none(), "half a percent of the error is nothing");
     }
 }

@@ -5,11 +5,11 @@ use super::channels::{CHANNELS, FORCE, NAMES, TURN, VOLTAGE, kind};
 use super::fit::FitPoint;
 use super::fitted::FittedSelection;
 use super::numbers::DISCHARGE;
+use super::pays::removed;
 use super::problem::{ChannelValues, Problem};
-use super::unseen::{deviations, parts, removed, seen, without};
-use crate::insight::criteria::unseen::{WORSE_DEVIATIONS, WORSE_SHARE};
+use super::unseen::{parts, rise, seen, without};
 use crate::insight::estimate::gram::Grams;
-use crate::model::effects::{Card, MODEL};
+use crate::model::effects::{Card, EffectKind, MODEL, ResidualChannel};
 
 /// A channel that is predicted worse on unseen flight.
 pub struct Worse {
@@ -18,6 +18,8 @@ pub struct Worse {
     pub channel: &'static str,
     /// Share by which its error rises.
     pub by: f64,
+    /// Whether it is worse than that of the vehicle that was given.
+    pub given: bool,
     /// The effect without which it rises least, if any is to blame.
     pub blamed: Option<&'static Card>,
 }
@@ -39,14 +41,6 @@ fn add(problem: &Problem, sums: &mut Squares, residual: &ChannelValues, out: &[b
             }
         }
     }
-}
-
-/// By which share the error rises from `before` to `after`, where it does beyond chance.
-fn rise(before: &[f64], after: &[f64]) -> Option<f64> {
-    let differences: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
-    let [before, after] = [before, after].map(|x| x.iter().sum::<f64>());
-    let by = (after / before.max(1e-300)).sqrt() - 1.0;
-    (by > WORSE_SHARE.get() && deviations(&differences) > WORSE_DEVIATIONS.get()).then_some(by)
 }
 
 /// The channel that the extended model of `fitted` predicts worst, if it predicts any worse than `base`, the compact
@@ -84,11 +78,12 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
             Some((c, against.max_by(f64::total_cmp)?))
         });
         let (c, by) = rises.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(Worse { number: c, channel: NAMES[c].0, by, blamed: blamed(fitted, c, span) })
+        let given = rise(&of(&given[c]), &of(&extended[c])).is_some();
+        Some(Worse { number: c, channel: NAMES[c].0, by, given, blamed: blamed(fitted, c, span) })
     })
 }
 
-/// The effect of the simulator that shows in channel `c` and without which that has the least error on unseen flight in
+/// The effect of the simulator that acts on channel `c` and without which that has the least error on unseen flight in
 /// the `span`, less than with it.
 fn blamed(fitted: &FittedSelection, c: usize, span: &[bool]) -> Option<&'static Card> {
     let problem = fitted.problem;
@@ -97,8 +92,10 @@ fn blamed(fitted: &FittedSelection, c: usize, span: &[bool]) -> Option<&'static 
         add(problem, &mut sums, &problem.residuals(&problem.predict(x)), out);
         sums[c].iter().zip(span).filter(|(_, s)| **s).map(|(x, _)| x).sum::<f64>()
     };
-    let shows = |card: &&Card| card.channels.contains(&kind(c)) && !fitted.places(card).is_empty();
-    let cards: Vec<&'static Card> = MODEL.into_iter().filter(shows).collect();
+    let pushed = |card: &Card| kind(c) == ResidualChannel::Force && card.kind == EffectKind::Battery;
+    let acts = |card: &&Card| card.channels.contains(&kind(c)) || pushed(card);
+    let held = |card: &&Card| !fitted.places(card).is_empty();
+    let cards: Vec<&'static Card> = MODEL.into_iter().filter(acts).filter(held).collect();
     let mut saved = vec![0.0; cards.len()];
     for out in parts(problem) {
         let x = without(problem, fitted.point(), &fitted.grams, &out);
@@ -111,19 +108,4 @@ fn blamed(fitted: &FittedSelection, c: usize, span: &[bool]) -> Option<&'static 
     }
     let best = cards.into_iter().zip(saved).max_by(|a, b| a.1.total_cmp(&b.1));
     best.filter(|(_, saved)| *saved > 0.0).map(|(card, _)| card)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn worse_is_what_rises_everywhere_and_not_what_rises_once() {
-        let before = [1.0; 20];
-        assert!(rise(&before, &[1.1; 20]).is_some_and(|by| (by - 0.0488).abs() < 1e-3));
-        let mut once = before;
-        once[3] = 4.0;
-        assert!(rise(&before, &once).is_none());
-        assert!(rise(&before, &[1.01; 20]).is_none(), "half a percent of the error is nothing");
-    }
 }

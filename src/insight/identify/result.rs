@@ -190,7 +190,8 @@ impl Identification {
         let said = data.flights.iter().find_map(|flight| flight.quality.log.vehicle.mass_kg);
         out.origin("mass_kg", if options.mass_kg.is_some() { Origin::Option } else { Origin::Record });
         match options.mass_kg.or(said) {
-            Some(mass) => out.vehicle.mass_kg = mass,
+            // What the base vehicle lends is told in accelerations.
+            Some(mass) => out.vehicle = out.vehicle.with_mass(mass),
             None => out.assume("mass_kg", "a flight does not tell it: weigh the vehicle and give --mass"),
         }
         ["gravity_m_s2", "drag.air_density_kg_m3"].into_iter().for_each(|key| out.origin(key, Origin::Base));

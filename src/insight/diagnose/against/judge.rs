@@ -16,9 +16,9 @@ use crate::insight::diagnose::finding::Status;
 use crate::insight::diagnose::fitted::FittedSelection;
 use crate::insight::diagnose::horizon;
 use crate::insight::diagnose::impact::integrated;
+use crate::insight::diagnose::pays::pays;
 use crate::insight::diagnose::problem::Problem;
 use crate::insight::diagnose::score::{ScoreTest, score};
-use crate::insight::diagnose::unseen;
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use crate::model::effects::{EffectKind, Role};
@@ -30,7 +30,7 @@ const PARTS: usize = 3;
 pub fn all(fitted: &FittedSelection, suspects: &[Suspect], found: &[FoundDifference]) -> Vec<Change> {
     let evident = |f: &FoundDifference| evident(fitted, places(fitted, &suspects[f.suspect]));
     let places: Vec<Vec<usize>> = found.iter().map(evident).collect();
-    let pays = unseen::pays(fitted, &thirds(fitted.problem), &places, MOST_EVIDENCE.get());
+    let pays = pays(fitted, &thirds(fitted.problem), &places, MOST_EVIDENCE.get());
     found.iter().zip(pays).map(|(found, pays)| judge(fitted, suspects, found, pays)).collect()
 }
 

@@ -1,6 +1,7 @@
 //! What was gained, what is left, what drifted, what could not show.
 
 use crate::insight::diagnose::finding::{Diagnosis, Verdict};
+use crate::insight::diagnose::gain;
 use crate::present::report::page::{digits, unit};
 use maud::{Markup, html};
 
@@ -24,8 +25,7 @@ pub fn gain(d: &Diagnosis) -> Markup {
             }
         }
         @if let Some(captured) = d.captured {
-            @let percent = 100.0 * captured.max(0.0);
-            p { (format!("{percent:.0} % of what a better model could gain on that flight was gained.")) }
+            p { (gain::words(captured)) "." }
         }
     }
 }

@@ -1,0 +1,51 @@
+//! Whether an effect pays on flight that was not used for fitting.
+
+use super::fitted::FittedSelection;
+use super::unseen::{begins, deviations, seen, squares, without};
+use crate::insight::estimate::gram::Grams;
+use crate::insight::estimate::inverse::inverse;
+use nalgebra::DMatrix;
+
+/// How surely each of `effects` (the places of its numbers among the fitted ones) pays on unseen flight, in standard
+/// deviations, where each of `parts` in turn is unseen. No stretch tells more than `most` whitened squares, for or
+/// against.
+pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>], most: f64) -> Vec<f64> {
+    let (problem, point) = (fitted.problem, fitted.point());
+    let whitener = &fitted.selection.whitener;
+    let mut gained: Vec<Vec<f64>> = vec![Vec::new(); effects.len()];
+    for out in parts {
+        let x = without(problem, point, &fitted.grams, out);
+        let with = squares(problem, whitener, &x);
+        let gram = seen(&fitted.grams, out);
+        for (own, gained) in effects.iter().zip(&mut gained) {
+            let known = |cost: &[f64]| -> f64 { cost.iter().zip(out).filter(|(_, o)| !**o).map(|(c, _)| c).sum() };
+            let tried = removed(fitted, &gram, own, &x).map(|x| squares(problem, whitener, &x));
+            // What the others make of its absence is chosen by the flight that is known.
+            let [a, b] = tried;
+            let missing = if known(&a) <= known(&b) { a } else { b };
+            let unseen = (0..problem.blocks).filter(|&b| out[b]);
+            gained.extend(unseen.map(|b| (missing[b] - with[b]).clamp(-most, most)));
+        }
+    }
+    gained.iter().map(|differences| deviations(differences)).collect()
+}
+
+/// The numbers `x` without those at `own`: the others as they are, and the others with what they can take over.
+pub fn removed(fitted: &FittedSelection, gram: &DMatrix<f64>, own: &[usize], x: &[f64]) -> [Vec<f64>; 2] {
+    let point = fitted.point();
+    let numbers = &fitted.problem.model.numbers;
+    let mut plain = x.to_vec();
+    own.iter().for_each(|&i| plain[point.free[i]] = 0.0);
+    let mut moved = plain.clone();
+    let rest: Vec<usize> = fitted.rest(own).into_iter().filter(|&i| !begins(fitted.problem, point.free[i])).collect();
+    let prior: Vec<f64> = rest.iter().map(|&i| numbers[point.free[i]].trust.powi(-2)).collect();
+    if let Some(inner) = inverse(&Grams::pick(gram, &rest, &rest), &prior) {
+        let size = DMatrix::from_iterator(own.len(), 1, own.iter().map(|&i| x[point.free[i]]));
+        let taken = inner * Grams::pick(gram, &rest, own) * size;
+        for (row, &i) in rest.iter().enumerate() {
+            let (k, n) = (point.free[i], &numbers[point.free[i]]);
+            moved[k] = (moved[k] + taken[(row, 0)]).clamp(n.low, n.high);
+        }
+    }
+    [plain, moved]
+}

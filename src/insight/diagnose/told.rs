@@ -1,0 +1,41 @@
+//! The compact model's numbers that flights tell: what predicts flight that was not used for fitting worse than the
+//! vehicle that was given is left as it was given.
+
+use super::channels::LIFT;
+use super::fit::{self, FitPoint};
+use super::numbers::THRUST;
+use super::problem::{ChannelValues, Problem};
+use super::unseen::{self, parts, rise};
+use super::whiten::Whitener;
+use crate::insight::estimate::gram::Grams;
+
+/// The numbers `free`, without the thrust where flights at other throttles than the rest are better predicted by the
+/// curve that was given: a cubic that is fitted to slow flights says nothing of a fast one.
+pub fn told(problem: &Problem, whitener: &Whitener, free: Vec<usize>) -> Vec<usize> {
+    let given: Vec<usize> = free.iter().copied().filter(|k| !THRUST.contains(k)).collect();
+    if given.len() == free.len() || problem.rows[LIFT].is_empty() {
+        return free;
+    }
+    let [fitted, held] = [&free, &given].map(|free| {
+        let point = fit::fit(problem, whitener, &problem.model.base, free);
+        lift_unseen(problem, whitener, &point)
+    });
+    if rise(&held, &fitted).is_some() { given } else { free }
+}
+
+/// Squares of the residuals of the specific force along the rotors' axis by stretch of time, each predicted by numbers
+/// that were fitted without it.
+fn lift_unseen(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> Vec<f64> {
+    let white = whitener.apply(&point.residual, &problem.rows);
+    let columns: Vec<&ChannelValues> = point.white.iter().chain([&white]).collect();
+    let grams = Grams::new(&columns, &problem.rows, problem.blocks);
+    let mut squares = vec![0.0; problem.blocks];
+    for out in parts(problem) {
+        let x = unseen::without(problem, point, &grams, &out);
+        let residual = problem.residuals(&problem.predict(&x));
+        for (row, r) in problem.rows[LIFT].iter().zip(&residual[LIFT]).filter(|(row, _)| out[row.block as usize]) {
+            squares[row.block as usize] += r * r;
+        }
+    }
+    squares
+}
