@@ -3,12 +3,29 @@
 
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
-use super::numbers::span;
+use super::numbers::{BEGIN, span};
+use super::problem::Problem;
+use super::select::Selection;
 use crate::base::check::Check;
-use crate::model::effects::{self, MODEL};
+use crate::model::effects::{self, EffectKind, MODEL};
 use crate::model::vehicle::Vehicle;
 use crate::model::vehicle::extension::Extension;
 use std::collections::BTreeMap;
+
+/// The base vehicle with the compact model's numbers of a selection. Beside an effect of the battery its voltages are
+/// those at rest: a pack that sags is above what was measured under load.
+pub fn at_rest(problem: &Problem, selection: &Selection) -> Vehicle {
+    let x = &selection.point.x;
+    let mut vehicle = problem.model.vehicle_at(x);
+    let pack = &mut vehicle.battery;
+    if selection.added.iter().any(|a| a.card.kind == EffectKind::Battery) {
+        let flights = problem.records.iter().zip(BEGIN..).filter(|(record, _)| !record.volts.is_empty());
+        let full_v = flights.map(|(_, k)| x[k]).fold(pack.full_v, f64::max);
+        pack.empty_v += full_v - pack.full_v;
+        pack.full_v = full_v;
+    }
+    vehicle
+}
 
 /// The base vehicle with every named effect of the simulator. Effects of sensors and of chance are no part of a
 /// vehicle; what a change of the compact model's numbers already holds is not added a second time.
@@ -17,9 +34,8 @@ use std::collections::BTreeMap;
 ///
 /// Where it would be no vehicle: what racer writes, racer reads.
 pub fn vehicle(fitted: &FittedSelection, findings: &[Finding]) -> Result<Vehicle, String> {
-    let model = &fitted.problem.model;
     let point = &fitted.selection.point;
-    let mut vehicle = model.vehicle_at(&point.x);
+    let mut vehicle = at_rest(fitted.problem, fitted.selection);
     let mut sizes: BTreeMap<String, BTreeMap<String, f64>> = vehicle.effects.sizes.clone();
     let mut uncertain: Vec<(String, usize)> = Vec::new();
     for finding in findings.iter().filter(|f| f.status != Status::Suspected) {

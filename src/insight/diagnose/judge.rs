@@ -107,7 +107,7 @@ fn without(fitted: &FittedSelection, card: &Card) -> (Vec<f64>, ChannelValues) {
     let own = fitted.places(card);
     let rest = fitted.rest(&own);
     let mut plain = fitted.point().x.clone();
-    span(card).for_each(|k| plain[k] = 0.0);
+    span(card).for_each(|k| plain[k] = fitted.problem.model.base[k]);
     let mut taken_over = plain.clone();
     let prior: Vec<f64> =
         rest.iter().map(|&i| fitted.problem.model.numbers[fitted.point().free[i]].trust.powi(-2)).collect();
@@ -116,8 +116,8 @@ fn without(fitted: &FittedSelection, card: &Card) -> (Vec<f64>, ChannelValues) {
         for (a, &i) in rest.iter().enumerate() {
             let k = fitted.point().free[i];
             let number = &fitted.problem.model.numbers[k];
-            let taken: f64 =
-                own.iter().enumerate().map(|(b, &j)| absorbed[(a, b)] * fitted.point().x[fitted.point().free[j]]).sum();
+            let size = |j: usize| fitted.point().x[fitted.point().free[j]] - plain[fitted.point().free[j]];
+            let taken: f64 = own.iter().enumerate().map(|(b, &j)| absorbed[(a, b)] * size(j)).sum();
             taken_over[k] = (taken_over[k] + taken).clamp(number.low, number.high);
         }
     }

@@ -7,43 +7,69 @@ use super::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST};
 use super::problem::Problem;
 use super::replication::stretches;
 use super::select::Selection;
-use super::{shown, worse};
+use super::worse::{self, Worse};
+use super::{extend, shown};
 use crate::base::check::Check;
-use crate::model::effects::{self, Card, MODEL, Role};
+use crate::model::effects::{self, Card, EffectKind, MODEL, Role};
 
 /// What of the selection is kept: what is only suspected is no part of the extended vehicle, nor what is not sure
 /// without that, nor what makes unseen flight worse. With the reason where what is left is worse for all that.
 pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> (Selection, Option<String>) {
     let mut given: Vec<usize> = Vec::new();
     loop {
-        let kept = selection.without(problem, &left_out(selection, findings)).with_given(problem, &given);
-        let fitted = FittedSelection::new(problem, &kept);
-        if let Some(finding) = leaning(&fitted, findings) {
+        let kept = Remaining::of(problem, selection, findings, &given);
+        if let Some(finding) = leaning(&FittedSelection::new(problem, &kept.selection), findings) {
             finding.suspect("its size is not sure without what is only suspected".into());
             continue;
         }
-        let worse = worse::find(&fitted, &selection.base);
+        if kept.wrong() == 0.0 {
+            return (kept.selection, None);
+        }
         // Before an effect is to blame, the vehicle's own numbers: flights need not tell them as well as the base does.
-        let told = match &worse {
-            Some(worse) => worse.given.then_some(worse.number),
-            None => problem.model.vehicle_at(&kept.point.x).check().is_err().then_some(LIFT),
-        };
-        let mut groups = told.into_iter().flat_map(|channel| [own(channel), like(channel)]);
-        let untold = groups.find(|group| group.iter().any(|k| kept.point.free.contains(k)));
-        if let Some(untold) = untold {
-            given.extend(untold);
+        let channel = kept.worse.as_ref().map_or(LIFT, |worse| worse.number);
+        let groups = [own(channel), like(channel)].map(|group| [&given[..], &group].concat());
+        let free = |group: &[usize]| group.iter().any(|k| kept.selection.point.free.contains(k));
+        let mut tried = groups.into_iter().filter(|group| free(group));
+        let better = |group: &Vec<usize>| Remaining::of(problem, selection, findings, group).wrong() < kept.wrong();
+        if let Some(group) = tried.find(better) {
+            given = group;
             continue;
         }
-        let Some(worse) = worse else {
-            return (kept, None);
+        let unseen = "on flight that was not used for fitting it";
+        let rise = kept.worse.as_ref().map(|worse| format!("{} {:.0} % worse", worse.channel, 100.0 * worse.by));
+        let blamed = |f: &Finding| match &kept.worse {
+            Some(worse) => worse.blamed.is_some_and(|card| card.id == f.effect),
+            None => effects::card(f.effect).is_some_and(|card| card.kind == EffectKind::Battery),
         };
-        let rise = format!("{} {:.0} % worse", worse.channel, 100.0 * worse.by);
-        let blamed = worse.blamed.map(|card| card.id);
-        let finding = findings.iter_mut().find(|f| Some(f.effect) == blamed && f.status != Status::Suspected);
-        let Some(finding) = finding else {
-            return (kept, Some(format!("on flight that was not used for fitting it predicts {rise}")));
+        let Some(finding) = findings.iter_mut().find(|f| f.status != Status::Suspected && blamed(f)) else {
+            return (kept.selection, rise.map(|rise| format!("{unseen} predicts {rise}")));
         };
-        finding.suspect(format!("on flight that was not used for fitting it makes {rise}"));
+        finding.suspect(match rise {
+            Some(rise) => format!("{unseen} makes {rise}"),
+            None => "at rest the pack would be above the voltages that the thrust is told at".into(),
+        });
+    }
+}
+
+/// A selection without what is not named, and what is wrong with that.
+struct Remaining {
+    selection: Selection,
+    worse: Option<Worse>,
+    flies: bool,
+}
+
+impl Remaining {
+    /// With the numbers `given` as the base vehicle has them.
+    fn of(problem: &Problem, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
+        let kept = selection.without(problem, &left_out(selection, findings)).with_given(problem, given);
+        let worse = worse::find(&FittedSelection::new(problem, &kept), &selection.base);
+        let flies = extend::at_rest(problem, &kept).check().is_ok();
+        Self { selection: kept, worse, flies }
+    }
+
+    /// The share by which a channel is worse, and more than any where it is no vehicle.
+    fn wrong(&self) -> f64 {
+        if self.flies { self.worse.as_ref().map_or(0.0, |worse| worse.by) } else { f64::MAX }
     }
 }
 

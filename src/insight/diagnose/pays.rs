@@ -14,7 +14,7 @@ pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>
     let whitener = &fitted.selection.whitener;
     let mut gained: Vec<Vec<f64>> = vec![Vec::new(); effects.len()];
     for out in parts {
-        let x = without(problem, point, &fitted.grams, out);
+        let x = without(problem, whitener, point, &fitted.grams, out);
         let with = squares(problem, whitener, &x);
         let gram = seen(&fitted.grams, out);
         for (own, gained) in effects.iter().zip(&mut gained) {
@@ -30,17 +30,18 @@ pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>
     gained.iter().map(|differences| deviations(differences)).collect()
 }
 
-/// The numbers `x` without those at `own`: the others as they are, and the others with what they can take over.
+/// The numbers `x` with those at `own` as the base vehicle has them, mostly none: the others as they are, and the
+/// others with what they can take over.
 pub fn removed(fitted: &FittedSelection, gram: &DMatrix<f64>, own: &[usize], x: &[f64]) -> [Vec<f64>; 2] {
     let point = fitted.point();
     let numbers = &fitted.problem.model.numbers;
     let mut plain = x.to_vec();
-    own.iter().for_each(|&i| plain[point.free[i]] = 0.0);
+    own.iter().for_each(|&i| plain[point.free[i]] = fitted.problem.model.base[point.free[i]]);
     let mut moved = plain.clone();
     let rest: Vec<usize> = fitted.rest(own).into_iter().filter(|&i| !begins(fitted.problem, point.free[i])).collect();
     let prior: Vec<f64> = rest.iter().map(|&i| numbers[point.free[i]].trust.powi(-2)).collect();
     if let Some(inner) = inverse(&Grams::pick(gram, &rest, &rest), &prior) {
-        let size = DMatrix::from_iterator(own.len(), 1, own.iter().map(|&i| x[point.free[i]]));
+        let size = DMatrix::from_iterator(own.len(), 1, own.iter().map(|&i| x[point.free[i]] - plain[point.free[i]]));
         let taken = inner * Grams::pick(gram, &rest, own) * size;
         for (row, &i) in rest.iter().enumerate() {
             let (k, n) = (point.free[i], &numbers[point.free[i]]);

@@ -60,7 +60,7 @@ impl Selection {
         let gone = |a: &Added| ids.contains(&a.card.id);
         dropped.extend(self.added.iter().filter(|a| gone(a)).flat_map(|a| span(a.card)));
         let mut x = self.point.x.clone();
-        dropped.iter().for_each(|&k| x[k] = 0.0);
+        dropped.iter().for_each(|&k| x[k] = problem.model.base[k]);
         let free: Vec<usize> = self.point.free.iter().copied().filter(|k| !dropped.contains(k)).collect();
         let point = if dropped.is_empty() { self.point.clone() } else { fit::fit(problem, &self.whitener, &x, &free) };
         Self {

@@ -31,7 +31,7 @@ fn lift_unseen(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> Vec<
     let grams = Grams::new(&columns, &problem.rows, problem.blocks);
     let mut squares = vec![0.0; problem.blocks];
     for out in parts(problem) {
-        let x = unseen::without(problem, point, &grams, &out);
+        let x = unseen::without(problem, whitener, point, &grams, &out);
         let residual = problem.residuals(&problem.predict(&x));
         for (row, r) in problem.rows[LIFT].iter().zip(&residual[LIFT]).filter(|(row, _)| out[row.block as usize]) {
             squares[row.block as usize] += r * r;

@@ -1,7 +1,7 @@
 //! Flight that was not used for fitting: contiguous parts of the time, each predicted by numbers that the others were
 //! fitted to.
 
-use super::fit::{FitPoint, costs};
+use super::fit::{FitPoint, costs, fit};
 use super::numbers::BEGIN;
 use super::problem::Problem;
 use super::whiten::Whitener;
@@ -12,6 +12,8 @@ use nalgebra::DMatrix;
 
 /// How many parts a single flight is divided into.
 const PARTS: usize = 3;
+/// A step leads to what is near where it gains this share of what it should.
+const NEAR: f64 = 0.5;
 
 /// Which stretches of time are unseen in each part: a flight at a time where there are several, else a third.
 pub fn parts(problem: &Problem) -> Vec<Vec<bool>> {
@@ -41,25 +43,38 @@ pub fn seen(grams: &Grams, out: &[bool]) -> DMatrix<f64> {
 }
 
 /// The numbers of `point` as the stretches that are not `out` alone would have them: a step from where all of them lie,
-/// which is near. The voltage that an unseen flight begins with is no part of what is judged, and stays.
-pub fn without(problem: &Problem, point: &FitPoint, grams: &Grams, out: &[bool]) -> Vec<f64> {
-    let mut x = point.x.clone();
+/// where that is near, else a fit. The voltage that an unseen flight begins with is no part of what is judged, and
+/// stays.
+pub fn without(problem: &Problem, whitener: &Whitener, point: &FitPoint, grams: &Grams, out: &[bool]) -> Vec<f64> {
     let moving: Vec<usize> = (0..point.free.len()).filter(|&i| !begins(problem, point.free[i])).collect();
-    let gram = seen(grams, out);
+    let Some((x, expected)) = step(problem, point, &seen(grams, out), &moving) else { return point.x.clone() };
+    let known = |cost: &[f64]| -> f64 { cost.iter().zip(out).filter(|(_, out)| !**out).map(|(c, _)| c).sum() };
+    let gained = known(&point.cost) - known(&squares(problem, whitener, &x));
+    if gained >= NEAR * expected {
+        return x;
+    }
+    let free: Vec<usize> = moving.iter().map(|&i| point.free[i]).collect();
+    fit(problem, &whitener.without(&problem.rows, out), &point.x, &free).x
+}
+
+/// A step of the numbers at `moving` by the inner products `gram` of the known stretches, and by how much it should
+/// lower their whitened squares.
+fn step(problem: &Problem, point: &FitPoint, gram: &DMatrix<f64>, moving: &[usize]) -> Option<(Vec<f64>, f64)> {
+    let mut x = point.x.clone();
     let number = |i: usize| &problem.model.numbers[point.free[i]];
     let prior: Vec<f64> = moving.iter().map(|&i| number(i).trust.powi(-2)).collect();
-    let Some(inner) = inverse(&Grams::pick(&gram, &moving, &moving), &prior) else { return x };
+    let inner = inverse(&Grams::pick(gram, moving, moving), &prior)?;
     let pull = |(row, &i): (usize, &usize)| {
         let k = point.free[i];
         gram[(i, point.free.len())] - prior[row] * (x[k] - problem.model.base[k])
     };
     let downhill = DMatrix::from_iterator(moving.len(), 1, moving.iter().enumerate().map(pull));
-    let step = inner * downhill;
+    let step = inner * &downhill;
     for (row, &i) in moving.iter().enumerate() {
         let n = number(i);
         x[point.free[i]] = (x[point.free[i]] + step[(row, 0)]).clamp(n.low, n.high);
     }
-    x
+    Some((x, step.dot(&downhill)))
 }
 
 /// Whitened squares at `x` by stretch of time.

@@ -1,5 +1,5 @@
 //! Never worse: whether the extended model predicts unseen flight, all of it or a part, worse in any channel than the
-//! vehicle that was given or the compact model fitted to the same flights; and which effect does it.
+//! better of the vehicle that was given and the compact model fitted to the same flights; and which effect does it.
 
 use super::channels::{CHANNELS, FORCE, NAMES, TURN, VOLTAGE, kind};
 use super::fit::FitPoint;
@@ -18,8 +18,6 @@ pub struct Worse {
     pub channel: &'static str,
     /// Share by which its error rises.
     pub by: f64,
-    /// Whether it is worse than that of the vehicle that was given.
-    pub given: bool,
     /// The effect without which it rises least, if any is to blame.
     pub blamed: Option<&'static Card>,
 }
@@ -43,11 +41,12 @@ fn add(problem: &Problem, sums: &mut Squares, residual: &ChannelValues, out: &[b
     }
 }
 
-/// The channel that the extended model of `fitted` predicts worst, if it predicts any worse than `base`, the compact
-/// model fitted, or than the vehicle that was given.
+/// The channel that the extended model of `fitted` predicts worst, if it predicts any worse than the better of `base`,
+/// the compact model fitted, and the vehicle that was given.
 pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
     let problem = fitted.problem;
-    let white = fitted.selection.whitener.apply(&base.residual, &problem.rows);
+    let whitener = &fitted.selection.whitener;
+    let white = whitener.apply(&base.residual, &problem.rows);
     let columns: Vec<&ChannelValues> = base.white.iter().chain([&white]).collect();
     let grams = Grams::new(&columns, &problem.rows, problem.blocks);
     let (mut extended, mut compact, mut given) = (zeros(problem), zeros(problem), zeros(problem));
@@ -56,14 +55,17 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
             let residual = problem.residuals(&problem.predict(x));
             add(problem, sums, &residual, &out);
         };
-        tried(&mut extended, &without(problem, fitted.point(), &fitted.grams, &out));
-        let fitted_base = without(problem, base, &grams, &out);
+        tried(&mut extended, &without(problem, whitener, fitted.point(), &fitted.grams, &out));
+        let fitted_base = without(problem, whitener, base, &grams, &out);
         tried(&mut compact, &fitted_base);
         // Errors of the sensors and the voltage at the beginning are the flight's, not the vehicle's.
         let mut as_given = fitted_base;
         as_given[..=DISCHARGE].copy_from_slice(&problem.model.base[..=DISCHARGE]);
         tried(&mut given, &as_given);
     }
+    // What one would go on with otherwise: of both the better one. Neither need be that in every part.
+    let total = |squares: &Squares, c: usize| squares[c].iter().sum::<f64>();
+    let reference = |c: usize| if total(&given, c) < total(&compact, c) { &given } else { &compact };
     // All unseen flight, then each part: what pays in two thirds may fail in the third.
     let mut spans = parts(problem);
     spans.insert(0, vec![true; problem.blocks]);
@@ -72,21 +74,16 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
             |squares: &[f64]| -> Vec<f64> { squares.iter().zip(span).filter(|(_, s)| **s).map(|(x, _)| *x).collect() };
         // What a vehicle predicts: the kinematics are the sensors' own.
         let channels = (0..TURN).chain([VOLTAGE]).filter(|&c| c < FORCE + 3 || c == VOLTAGE);
-        let rises = channels.filter_map(|c| {
-            let after = of(&extended[c]);
-            let against = [&compact[c], &given[c]].into_iter().filter_map(|before| rise(&of(before), &after));
-            Some((c, against.max_by(f64::total_cmp)?))
-        });
+        let rises = channels.filter_map(|c| Some((c, rise(&of(&reference(c)[c]), &of(&extended[c]))?)));
         let (c, by) = rises.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let given = rise(&of(&given[c]), &of(&extended[c])).is_some();
-        Some(Worse { number: c, channel: NAMES[c].0, by, given, blamed: blamed(fitted, c, span) })
+        Some(Worse { number: c, channel: NAMES[c].0, by, blamed: blamed(fitted, c, span) })
     })
 }
 
 /// The effect of the simulator that acts on channel `c` and without which that has the least error on unseen flight in
 /// the `span`, less than with it.
 fn blamed(fitted: &FittedSelection, c: usize, span: &[bool]) -> Option<&'static Card> {
-    let problem = fitted.problem;
+    let (problem, whitener) = (fitted.problem, &fitted.selection.whitener);
     let total = |x: &[f64], out: &[bool]| {
         let mut sums = zeros(problem);
         add(problem, &mut sums, &problem.residuals(&problem.predict(x)), out);
@@ -98,7 +95,7 @@ fn blamed(fitted: &FittedSelection, c: usize, span: &[bool]) -> Option<&'static 
     let cards: Vec<&'static Card> = MODEL.into_iter().filter(acts).filter(held).collect();
     let mut saved = vec![0.0; cards.len()];
     for out in parts(problem) {
-        let x = without(problem, fitted.point(), &fitted.grams, &out);
+        let x = without(problem, whitener, fitted.point(), &fitted.grams, &out);
         let gram = seen(&fitted.grams, &out);
         let with = total(&x, &out);
         for (card, saved) in cards.iter().zip(&mut saved) {

@@ -1,9 +1,10 @@
 //! Signals on the IMU's clock, as measured and as the simulator's own equations predict them from what was commanded.
 
 use super::{PredictOptions, drive, together};
+use crate::base::stats::mean;
 use crate::insight::diagnose::horizon::{self, Horizon};
 use crate::insight::diagnose::model::Model;
-use crate::insight::diagnose::numbers::{self, TAU};
+use crate::insight::diagnose::numbers::{self, BEGIN, TAU};
 use crate::insight::diagnose::predict::Predicted;
 use crate::insight::diagnose::record::{FlightRecord, full_rate};
 use crate::insight::prepare::data::Data;
@@ -11,6 +12,9 @@ use crate::insight::prepare::flight::PreparedFlight;
 use crate::model::effects::{self, ControllerPart};
 use crate::model::vehicle::Vehicle;
 use crate::model::vehicle::identified::{SensorOffsets, ThrustSource};
+
+/// Flight that shows the voltage that it began with, s.
+const BEGINNING_S: f64 = 2.0;
 
 /// Body rates, specific force along each axis, voltage.
 pub const CHANNELS: usize = 7;
@@ -89,14 +93,40 @@ pub fn predicted(data: &Data, vehicle: &Vehicle, options: &PredictOptions) -> Si
         // What a mixer makes of the command is in its outputs.
         effects::of_controller(ControllerPart::Room).into_iter().for_each(|card| x[numbers::span(card)].fill(0.0));
     }
-    let state = |(f, record): (usize, &FlightRecord)| Predicted::new(&model, record, f, &x);
-    let states: Vec<Predicted> = records.iter().enumerate().map(state).collect();
+    let states: Vec<Predicted> =
+        records.iter().enumerate().map(|(f, record)| from_beginning(&model, record, f, &mut x)).collect();
     let sensors = vehicle.identified.as_ref().and_then(|i| i.sensors).unwrap_or_default();
     let channels = std::array::from_fn(|c| {
         let one = |f: usize| smoothed(c, &data.flights[f], &records[f], &states[f], &sensors, options);
         (0..records.len()).map(one).collect()
     });
     Signals { channels, driven_by: source, model, x, records, states }
+}
+
+/// Predicts `record`, number `flight`. The voltage that it begins with is what the first seconds show: a pack that sags
+/// was measured below that.
+fn from_beginning(model: &Model, record: &FlightRecord, flight: usize, x: &mut [f64]) -> Predicted {
+    let mut state = Predicted::new(model, record, flight, x);
+    let begin = BEGIN + flight;
+    let first = record.volts.first().map_or(0.0, |(i, _)| record.time[*i]);
+    let off = |state: &Predicted| {
+        let begins = record.volts.iter().take_while(|(i, _)| record.time[*i] <= first + BEGINNING_S);
+        mean(&begins.map(|(i, volts)| volts - state.modelled_v[*i]).collect::<Vec<_>>())
+    };
+    // Where an effect goes with the charge, the voltage moves by more than the beginning does: once more by a secant.
+    let mut last = off(&state);
+    let mut by = last;
+    for _ in 0..2 {
+        x[begin] += by;
+        state = state.changed(model.dirty(&[begin], x), model, record, flight, x);
+        let now = off(&state);
+        by *= now / (last - now);
+        last = now;
+        if !by.is_finite() {
+            break;
+        }
+    }
+    state
 }
 
 /// Channel `c` of a flight, through the filter that the measured one passes.
