@@ -26,6 +26,10 @@ LOOP = "python3 tests/python/firmware_loop.py target/release/racer"
 # Name: needs, about how long, and the command; a list of trainings is a command of its own.
 COMMANDS = {
     "against": ([], "1.5 h", f"{BENCH} --against --n 100 --seconds 60 --seed 13 --jobs 2 --csv results/against.csv"),
+    "against-120s": ([], "2 h", f"{BENCH} --against --n 100 --seconds 120 --seed 14 --jobs 2 "
+                     "--csv results/against-120s.csv"),
+    "measured": (["logs"], "5 min", "python3 tests/python/measured_flights.py target/release/racer {logs} "
+                 "results/measured-flights.csv"),
     "plan": ([], "4 h", f"{BENCH} --plan --n 130 --seed 4 --jobs 2 --csv results/plan.csv"),
     "matched": ([], "2 h", f"{BENCH} --n 60 --seed 31 --tier matched --jobs 2"),
     "unmatched": ([], "0.5 h", f"{BENCH} --n 14 --seed 32 --tier unmatched --jobs 2"),
