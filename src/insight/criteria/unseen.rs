@@ -12,7 +12,7 @@ criteria! {
     /// both are one.
     SAME_SKEW_SHARE = 0.5, Assumed("windows of six seconds tell it to a few percent of what matters");
     /// Standard deviations by which unseen flight has to be predicted worse in a channel to be worse.
-    WORSE_DEVIATIONS = 2.5, Theory("one in 160 by chance, of seven channels");
+    WORSE_DEVIATIONS = 2.0, Theory("one in forty by chance; what is tried first then costs no name");
     /// Rise of a channel's error on unseen flight, as a share, that is worse.
     WORSE_SHARE = 0.01, Assumed("a hundredth of the error is worth no word");
     /// Share of a sensor's error that attitude and velocity have to show by themselves.

@@ -4,7 +4,7 @@
 use super::channels::{CHANNELS, FORCE, NAMES, TURN, VOLTAGE, kind};
 use super::fit::FitPoint;
 use super::fitted::FittedSelection;
-use super::numbers::DISCHARGE;
+use super::numbers::LOG_AT;
 use super::pays::removed;
 use super::problem::{ChannelValues, Problem};
 use super::unseen::{parts, rise, seen, without};
@@ -60,7 +60,7 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
         tried(&mut compact, &fitted_base);
         // Errors of the sensors and the voltage at the beginning are the flight's, not the vehicle's.
         let mut as_given = fitted_base;
-        as_given[..=DISCHARGE].copy_from_slice(&problem.model.base[..=DISCHARGE]);
+        as_given[..LOG_AT].copy_from_slice(&problem.model.base[..LOG_AT]);
         tried(&mut given, &as_given);
     }
     // What one would go on with otherwise: of both the better one. Neither need be that in every part.
