@@ -190,31 +190,15 @@ def other_truth():
 
 
 def measured_names():
-    """What is named in measured flights, with the size of each number."""
-    sets = dict.fromkeys(r["set"] for r in rows("measured-flights"))
-    named = {name: [] for name in sets}
-    for r in rows("measured-flights", kind="named"):
-        what, number = r["what"].split(": ")
-        named[r["set"]].append((what, f"{number} {r['value']} {r['unit']} ({r['low']} to {r['high']})"))
-    body = []
-    for name, found in named.items():
-        effects = dict.fromkeys(what for what, _ in found)
-        said = [f"{what}: {', '.join(size for w, size in found if w == what)}" for what in effects]
-        body.append((name, "; ".join(said).replace("_", " ") or "nothing"))
-    return table(["set", "named, with the size (95 %)"], body)
+    """What is named in measured flights, a line for each number; sets without a name are left out."""
+    of = lambda r: (r["set"], r["what"].replace("_", " "), f"{r['value']} {r['unit']} ({r['low']} to {r['high']})")
+    return table(["set", "named", "size (95 %)"], map(of, rows("measured-flights", kind="named")))
 
 
 def measured_unseen():
     """Errors on the flight that was not used, of the base vehicle and of the extended one."""
-    body = []
-    for name in dict.fromkeys(r["set"] for r in rows("measured-flights")):
-        missing = rows("measured-flights", set=name, kind="no vehicle")
-        pairs = rows("measured-flights", set=name, kind="base and extended")
-        said = [f"{r['what']} {r['value']} -> {r['low']} {r['unit']}" for r in pairs]
-        trains = rows("measured-flights", set=name, kind="trains", value="1")
-        said = missing[0]["what"] if missing else "; ".join(said) or "one flight: none unseen"
-        body.append((name, "yes" if trains else "no", said))
-    return table(["set", "extended vehicle trains", "RMS on the unseen flight, base -> extended"], body)
+    of = lambda r: (r["set"], r["what"], r["value"], r["low"], r["unit"])
+    return table(["set", "signal", "base", "extended", ""], map(of, rows("measured-flights", kind="base and extended")))
 
 
 def judgement(pair):

@@ -96,7 +96,7 @@ pub fn words(captured: f64) -> String {
         return "a regression that knows nothing of vehicles gains nothing beyond that on that flight".into();
     }
     let share = 100.0 * captured.max(0.0);
-    format!("{share:.0} % of what a regression that knows nothing of vehicles says could be gained on that flight")
+    format!("{share:.0} % of what could be gained was, by a regression that knows nothing of vehicles, on that flight")
 }
 
 fn channels(problem: &Problem, base: &FitPoint, extended: &FitPoint, out: &[bool]) -> BTreeMap<&'static str, Gain> {
