@@ -56,7 +56,7 @@ fn every_vehicle_is_read_back() {
     assert!(refused > 3, "{kept} kept and {refused} refused");
 }
 
-/// A battery belongs to the thrust curve over its voltage: where one is lent, so is the other.
+/// A battery belongs to the thrust curve over its voltage: where one is lent, so is the other, for its own mass.
 #[test]
 fn a_lent_thrust_curve_keeps_its_own_pack() {
     let truth = truth::Vehicle::draw(4);
@@ -67,7 +67,7 @@ fn a_lent_thrust_curve_keeps_its_own_pack() {
         log.motors.push(t, motors::row(&[0, 1, 2, 3].map(|_| rng.random_range(0.2..0.9))));
     }
     let (vehicle, fine) = written(&log);
-    let base = Vehicle::load("seed_class").unwrap();
+    let base = Vehicle::load("seed_class").unwrap().with_mass(vehicle.mass_kg);
     assert!(!fine);
     assert_eq!((vehicle.thrust_n, vehicle.battery), (base.thrust_n, base.battery));
     assert!(vehicle.identified.unwrap().assumed.contains_key("battery"));
