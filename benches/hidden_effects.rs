@@ -12,8 +12,12 @@ mod args;
 mod case;
 #[path = "hidden_effects/criteria.rs"]
 mod criteria;
+#[path = "hidden_effects/extended.rs"]
+mod extended;
 #[path = "hidden_effects/judge.rs"]
 mod judge;
+#[path = "hidden_effects/judged_row.rs"]
+mod judged_row;
 #[path = "hidden_effects/other.rs"]
 mod other;
 #[path = "hidden_effects/pairs.rs"]
@@ -24,6 +28,8 @@ mod plan;
 mod plan_table;
 #[path = "hidden_effects/real.rs"]
 mod real;
+#[path = "hidden_effects/rows.rs"]
+mod rows;
 #[path = "hidden_effects/run.rs"]
 mod run;
 #[path = "hidden_effects/share.rs"]
@@ -37,6 +43,7 @@ use args::{Args, Tier};
 use case::Case;
 use clap::Parser;
 use judge::Judged;
+use rows::{Row, Rows};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -47,14 +54,10 @@ fn main() {
         return criteria::measure(&args, wanted);
     }
     if args.against {
-        let pairs = each(&args, |number| pairs::case(number, &args), pairs::Pair::line);
-        pairs::print(&pairs);
-        return args.csv.iter().for_each(|path| pairs::write(path, &pairs));
+        return pairs::print(&each(&args, |number| pairs::case(number, &args)));
     }
     if args.plan {
-        let planned = each(&args, |number| plan::case(number, &args), plan::Planned::line);
-        plan_table::print(&planned);
-        return args.csv.iter().for_each(|path| plan_table::write(path, &planned));
+        return plan_table::print(&each(&args, |number| plan::case(number, &args)));
     }
     let mut judged = Vec::new();
     if args.tier != Tier::Real {
@@ -64,9 +67,6 @@ fn main() {
         judged.extend(real::all(&args));
     }
     tables::print(&judged);
-    if let Some(path) = &args.csv {
-        other::write(path, &judged);
-    }
 }
 
 /// All drawn cases.
@@ -75,11 +75,12 @@ fn drawn(args: &Args) -> Vec<Judged> {
         Tier::Other => other::case(number, args),
         _ => run::case(&Case::draw(number, args), args),
     };
-    each(args, one, Judged::line)
+    each(args, one)
 }
 
-/// `--n` cases, `--jobs` at a time, each printed as a line when it is done.
-fn each<T: Send>(args: &Args, one: impl Fn(usize) -> T + Sync, line: impl Fn(&T) -> String + Sync) -> Vec<T> {
+/// `--n` cases, `--jobs` at a time, each printed and written as a line when it is done; none that the CSV has already.
+fn each<T: Row + Send>(args: &Args, one: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let rows = Rows::open::<T>(args);
     let next = AtomicUsize::new(args.from);
     let done = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
@@ -90,8 +91,12 @@ fn each<T: Send>(args: &Args, one: impl Fn(usize) -> T + Sync, line: impl Fn(&T)
                     if number >= args.from + args.n {
                         return;
                     }
+                    if rows.has(number) {
+                        continue;
+                    }
                     let judged = one(number);
-                    println!("{number:>5}  {}", line(&judged));
+                    println!("{number:>5}  {}", judged.line());
+                    rows.write(number, &judged);
                     done.lock().expect("no thread panics with it").push((number, judged));
                 }
             });

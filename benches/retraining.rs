@@ -6,6 +6,9 @@
 //! the vehicle without the effect, policies are trained with the same budget in that vehicle and in the extended one,
 //! and both race in the independent simulator. The control is the first policy's race there without the effect.
 //!
+//! With `--by-motor` that simulator is a quadrotor motor by motor under its flight controller, whose compact model is
+//! the base: `--by-motor --effects inflow_root=1,throttle_link=0.025,stick_filter=0.012`.
+//!
 //! `cargo bench --bench retraining -- --policy RUN --svg lap.svg` races a policy that is there in both simulators, and
 //! draws the laps.
 
@@ -25,17 +28,18 @@ mod sizes;
 mod table;
 #[path = "../tests/truth/mod.rs"]
 mod truth;
+#[path = "retraining/truths.rs"]
+mod truths;
+#[path = "retraining/vehicles.rs"]
+mod vehicles;
 
 use args::Args;
 use clap::Parser;
 use program::Folder;
 use racer::race::snapshot::Snapshot;
-use rand::SeedableRng;
-use rand::rngs::StdRng;
 use table::Row;
-use truth::Vehicle;
-use truth::effects::Hidden;
-use truth::hidden::{self, Setting, Style, World};
+use truth::hidden::{Setting, Style};
+use vehicles::Truths;
 
 fn main() {
     let args = Args::parse();
@@ -43,7 +47,7 @@ fn main() {
         return beside::show(&args, policy);
     }
     println!("{}", args.summary());
-    let vehicle = args.draw.map_or_else(Vehicle::seed_class, Vehicle::draw);
+    let truths = Truths::of(&args);
     let folder = Folder::new(&args);
     let mut rows = Vec::new();
     let show = |row: Row, rows: &mut Vec<Row>| {
@@ -51,12 +55,12 @@ fn main() {
         rows.push(row);
     };
     // The base vehicle knows no effect: one policy of a seed serves all.
-    folder.write_base(&vehicle.in_racer());
+    folder.write_base(&truths.base());
     let policies: Vec<(u64, Snapshot)> =
         (1..=args.seeds).map(|seed| (seed, folder.train("base.toml", &format!("base-{seed}"), seed))).collect();
     println!("{}", table::HEADER);
     for (seed, policy) in &policies {
-        let flights = race::race(policy, &World::new(&vehicle, &[]), &args);
+        let flights = race::race(policy, &*truths.world(&[]), &args);
         let simulated = folder.evaluate(&format!("base-{seed}"), "base.toml", "none");
         let row = Row { effect: "none".into(), size: 0.0, seed: *seed, trained: "base", flights, simulated };
         show(row, &mut rows);
@@ -68,21 +72,21 @@ fn main() {
         );
     }
     for (id, size) in args.cases() {
-        let hidden = [Hidden::sized(&id, size, &vehicle, &mut StdRng::seed_from_u64(1))];
+        let hidden = [truths.hidden(&id, size)];
         let setting = Setting { seed: 1, seconds: args.seconds, noise: 1.0, imu_hz: 500.0, style: Style::Excited };
-        let (extended, found) = folder.diagnose(&id, &hidden::fly(&vehicle, &hidden, &setting));
+        let (extended, found) = folder.diagnose(&id, &truths.fly(&hidden, &setting));
         println!("{id} {size}: {found}");
-        let world = World::new(&vehicle, &hidden);
+        let world = truths.world(&hidden);
         for (seed, policy) in &policies {
             let seed = *seed;
             let row = |trained, flights, simulated| Row { effect: id.clone(), size, seed, trained, flights, simulated };
             let evaluate = |run: &str| folder.evaluate(run, extended.as_ref()?, &id);
-            let flights = race::race(policy, &world, &args);
+            let flights = race::race(policy, &*world, &args);
             show(row("base", flights, evaluate(&format!("base-{seed}"))), &mut rows);
             if let Some(extended) = &extended {
                 let run = format!("{id}-{seed}");
                 let policy = folder.train(extended, &run, seed);
-                show(row("extended", race::race(&policy, &world, &args), evaluate(&run)), &mut rows);
+                show(row("extended", race::race(&policy, &*world, &args), evaluate(&run)), &mut rows);
             }
         }
     }

@@ -37,6 +37,8 @@ pub struct Answer {
     /// Whether a base parameter is said to have drifted.
     pub drift: bool,
     pub captured: Option<f64>,
+    /// Why there is no extended vehicle.
+    pub not_extended: Option<String>,
 }
 
 impl Answer {
@@ -53,6 +55,7 @@ impl Answer {
             not_detectable: list(&json["not_detectable"]).iter().filter_map(effect).collect(),
             drift,
             captured: json["captured"].as_f64(),
+            not_extended: json["not_extended"].as_str().map(str::to_string),
         })
     }
 

@@ -77,9 +77,16 @@ pub struct Args {
     /// With `--criteria`: logs that an earlier run kept; without, `--n` are drawn
     #[arg(long, value_name = "DIR", requires = "criteria")]
     pub logs: Option<PathBuf>,
-    /// Every log in a line of CSV; with `--criteria`, the table
+    /// Ask for the extended vehicle as well, train it for a moment, and hold it against a flight that nothing has seen
+    #[arg(long)]
+    pub extended: bool,
+    /// Every log in a line of CSV, as each is done; what the file has of this build and these flights is not done again.
+    /// With `--criteria`, the table
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
+    /// What the rows call the program [default: the commit here]
+    #[arg(long, value_name = "NAME")]
+    pub build: Option<String>,
     /// The program [default: the one built with this]
     #[arg(long, value_name = "PATH", default_value = env!("CARGO_BIN_EXE_racer"))]
     pub racer: PathBuf,

@@ -2,6 +2,7 @@
 
 use crate::answer::{Answer, Finding, Status};
 use crate::case::Group;
+use crate::extended::Extended;
 use crate::truth::effects::Hidden;
 
 /// A log that the program answered, or failed on.
@@ -14,6 +15,8 @@ pub struct Judged {
     pub answer: Result<Answer, String>,
     /// How long the program took, s.
     pub seconds: f64,
+    /// The vehicle that it wrote, if any.
+    pub extended: Option<Result<Extended, String>>,
 }
 
 /// A parameter of a rightly named effect.
@@ -126,23 +129,6 @@ impl Judged {
         scored
     }
 
-    /// Truth, answer and judgement in a line.
-    pub fn line(&self) -> String {
-        let truth = match self.wanted() {
-            [] => self.group.name().to_string(),
-            some => some.iter().map(told).collect::<Vec<_>>().join(" + "),
-        };
-        let (said, verdict) = match &self.answer {
-            Ok(answer) => {
-                let said: Vec<_> = answer.findings.iter().map(Self::say).collect();
-                (if said.is_empty() { "nothing".into() } else { said.join(", ") }, answer.verdict.clone())
-            }
-            Err(error) => (format!("FAILED: {error}"), String::new()),
-        };
-        let judgement = self.judgement();
-        format!("{:<10}{truth}  ->  {said}  [{verdict}]  {judgement}  {:.1} s", self.group.name(), self.seconds)
-    }
-
     pub fn say(finding: &Finding) -> String {
         let status = match finding.status {
             Status::Named => "",
@@ -153,7 +139,7 @@ impl Judged {
         format!("{}{status}", finding.effect)
     }
 
-    fn judgement(&self) -> &'static str {
+    pub fn judgement(&self) -> &'static str {
         match (self.group, self.first()) {
             _ if self.answer.is_err() => "",
             (Group::None | Group::Drift, None) => "right",
@@ -172,7 +158,7 @@ impl Judged {
     }
 }
 
-fn told(truth: &Hidden) -> String {
+pub fn told(truth: &Hidden) -> String {
     let parameters = truth.parameters();
     if parameters.is_empty() {
         return format!("{} {:.3}", truth.id, truth.size);

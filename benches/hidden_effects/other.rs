@@ -1,8 +1,10 @@
-//! The third truth: what is hidden in which of its flights, and every log as a line of CSV.
+//! The third truth: what is hidden in which of its flights.
 
 use crate::args::Args;
 use crate::case::Group;
+use crate::extended::Extended;
 use crate::judge::Judged;
+use crate::rows::Row;
 use crate::run::{self, Folder};
 use crate::truth::effects::{Hidden, log_range};
 use crate::truth::hidden::Setting;
@@ -12,6 +14,9 @@ use rand::{RngExt, SeedableRng};
 
 /// Share of its smallest size that a cause has which nobody would notice.
 const SMALL: f64 = 0.15;
+
+/// Length of the flight that the extended vehicle is held against, s.
+const UNSEEN_S: f64 = 60.0;
 
 /// Draws, flies, diagnoses and judges log `number`.
 pub fn case(number: usize, args: &Args) -> Judged {
@@ -36,7 +41,10 @@ pub fn case(number: usize, args: &Args) -> Judged {
     // Its rate loop is no fault, whatever is hidden besides.
     let own = causes::OWN.into_iter().filter(|name| hidden.iter().all(|h| !h.is(name)));
     let before = own.map(str::to_string).collect();
-    let judged = Judged { group, hidden, before, answer, seconds };
+    // Flown only where there is a vehicle to predict it.
+    let unseen = || fly(&airframe, &hidden, &Setting { seed: setting.seed ^ 1, seconds: UNSEEN_S, ..setting });
+    let extended = Extended::of(args, &folder.path, unseen);
+    let judged = Judged { group, hidden, before, answer, seconds, extended };
     if args.keep.is_some() {
         let truth = format!("{}\n{airframe:#?}\n{setting:#?}\n", judged.line());
         std::fs::write(folder.path.join("truth.txt"), truth).expect("the truth to keep");
@@ -55,52 +63,4 @@ fn drawn(rng: &mut StdRng) -> (Group, Vec<Hidden>) {
         }
         _ => (Group::Small, vec![causes::draw(causes::small(rng).id, SMALL, rng)]),
     }
-}
-
-/// Writes every log as a line.
-///
-/// # Panics
-///
-/// Where the file cannot be written.
-pub fn write(path: &std::path::Path, all: &[Judged]) {
-    let mut out = csv::Writer::from_path(path).expect("the CSV");
-    let header = [
-        "log",
-        "group",
-        "hidden",
-        "said",
-        "verdict",
-        "first_right",
-        "found",
-        "of",
-        "spurious",
-        "unexplained",
-        "seconds",
-    ];
-    out.write_record(header).expect("a line");
-    for (number, j) in all.iter().enumerate() {
-        let hidden: Vec<String> = j.hidden.iter().map(|h| format!("{}={:.4}", h.id, h.size)).collect();
-        let (said, verdict) = match &j.answer {
-            Ok(answer) => {
-                (answer.findings.iter().map(Judged::say).collect::<Vec<_>>().join(" "), answer.verdict.clone())
-            }
-            Err(error) => (String::new(), format!("FAILED {error}")),
-        };
-        let number_of = |n: usize| n.to_string();
-        let row = [
-            number_of(number),
-            j.group.name().to_string(),
-            hidden.join(" "),
-            said,
-            verdict,
-            number_of(usize::from(j.first_is_right())),
-            number_of(j.found()[1]),
-            number_of(j.hidden.len()),
-            j.spurious().join(" "),
-            number_of(usize::from(j.unexplained())),
-            format!("{:.1}", j.seconds),
-        ];
-        out.write_record(row).expect("a line");
-    }
-    out.flush().expect("the CSV");
 }

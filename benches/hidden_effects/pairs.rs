@@ -1,6 +1,7 @@
 //! `--against`: two flights of one vehicle of the third truth, half of them without a change between the two.
 
 use crate::args::Args;
+use crate::rows::Row;
 use crate::run::{self, Folder, VEHICLE};
 use crate::share::Share;
 use crate::truth::effects::{Hidden, log_range};
@@ -211,8 +212,31 @@ impl Pair {
     fn first_set_holds(&self) -> bool {
         !self.named().is_empty() && self.members.iter().any(|member| self.is_right(member))
     }
+}
 
-    pub fn line(&self) -> String {
+impl Row for Pair {
+    const COLUMNS: &'static [&'static str] =
+        &["changed", "size", "mended", "both", "said", "first_right", "first_or_set", "could_not_show", "seconds"];
+
+    fn fields(&self) -> Vec<String> {
+        let (id, size, mended) =
+            self.changed.as_ref().map_or((String::new(), 0.0, false), |c| (c.id.clone(), c.size, c.mended));
+        let said: Vec<String> = self.said.iter().flatten().map(|(name, status)| format!("{name}:{status}")).collect();
+        let flag = |yes: bool| usize::from(yes).to_string();
+        vec![
+            id,
+            format!("{size:.4}"),
+            flag(mended),
+            self.both.clone(),
+            self.said.as_ref().err().cloned().unwrap_or(said.join(" ")),
+            flag(self.first_is_right()),
+            flag(self.first_is_right() || self.first_set_holds()),
+            flag(self.could_not_show),
+            format!("{:.1}", self.seconds),
+        ]
+    }
+
+    fn line(&self) -> String {
         let truth = self.changed.as_ref().map_or("unchanged".into(), |c| {
             format!("{} {:.3}{}", c.id, c.size, if c.mended { " (mended)" } else { "" })
         });
@@ -259,46 +283,4 @@ pub fn print(all: &[Pair]) {
     });
     let times: Vec<f64> = all.iter().map(|p| p.seconds).collect();
     println!("run time: median {:.1} s, worst {:.1} s", quantile(&times, 0.5), quantile(&times, 1.0));
-}
-
-/// Writes every pair as a line.
-///
-/// # Panics
-///
-/// Where the file cannot be written.
-pub fn write(path: &Path, all: &[Pair]) {
-    let mut out = csv::Writer::from_path(path).expect("the CSV");
-    out.write_record([
-        "pair",
-        "changed",
-        "size",
-        "mended",
-        "both",
-        "said",
-        "first_right",
-        "first_or_set",
-        "could_not_show",
-        "seconds",
-    ])
-    .expect("a line");
-    for (number, p) in all.iter().enumerate() {
-        let (id, size, mended) =
-            p.changed.as_ref().map_or((String::new(), 0.0, false), |c| (c.id.clone(), c.size, c.mended));
-        let said: Vec<String> = p.said.iter().flatten().map(|(name, status)| format!("{name}:{status}")).collect();
-        let flag = |yes: bool| usize::from(yes).to_string();
-        let row = [
-            number.to_string(),
-            id,
-            format!("{size:.4}"),
-            flag(mended),
-            p.both.clone(),
-            p.said.as_ref().err().cloned().unwrap_or(said.join(" ")),
-            flag(p.first_is_right()),
-            flag(p.first_is_right() || p.first_set_holds()),
-            flag(p.could_not_show),
-            format!("{:.1}", p.seconds),
-        ];
-        out.write_record(row).expect("a line");
-    }
-    out.flush().expect("the CSV");
 }

@@ -4,6 +4,7 @@
 use crate::answer::{Answer, Finding, Status};
 use crate::args::Args;
 use crate::judge::Judged;
+use crate::rows::Row;
 use crate::run::{self, Folder, LOG, VEHICLE};
 use crate::truth::Vehicle;
 use crate::truth::effects::{Hidden, catalogue, log_range};
@@ -33,7 +34,7 @@ pub struct Planned {
     pub before: Result<Answer, String>,
     /// Where the truth is among what was tied: the plan, its length (s), and what both flights showed.
     pub after: Option<Result<After, String>>,
-    seconds: f64,
+    pub seconds: f64,
 }
 
 #[derive(Debug)]
@@ -150,19 +151,6 @@ impl Planned {
     pub fn wrong(&self) -> bool {
         let wrong = |f: &Finding| f.status == Status::Named && !self.hidden.is(&f.effect);
         self.answer().is_some_and(|a| a.named().any(wrong))
-    }
-
-    /// Truth, first answer, plan and last answer in a line.
-    pub fn line(&self) -> String {
-        let hidden = format!("{} {:.4}", self.hidden.id, self.hidden.size);
-        let first = said(&self.before);
-        let Some(after) = &self.after else { return format!("{hidden}  ->  {first}  {:.1} s", self.seconds) };
-        let (plan, last) = match after {
-            Ok(after) => (format!("{} ({:.0} s)", after.plan, after.plan_s), says(&after.answer)),
-            Err(error) => (format!("FAILED: {error}"), String::new()),
-        };
-        let verdict = if self.apart() { "apart" } else { "NOT APART" };
-        format!("{hidden}  ->  {first}  ->  {plan}  ->  {last}  {verdict}  {:.1} s", self.seconds)
     }
 }
 

@@ -1,9 +1,9 @@
-//! What plans were worth, printed and as CSV.
+//! What plans were worth, printed and as lines of CSV.
 
 use crate::plan::{Planned, said, says};
+use crate::rows::Row;
 use crate::share::Share;
 use racer::base::stats::quantile;
-use std::path::Path;
 
 /// Prints the shares.
 pub fn print(all: &[Planned]) {
@@ -22,35 +22,39 @@ pub fn print(all: &[Planned]) {
     }
 }
 
-/// Writes every flight as a line.
-///
-/// # Panics
-///
-/// Where the file cannot be written.
-pub fn write(path: &Path, all: &[Planned]) {
-    let mut out = csv::Writer::from_path(path).expect("the CSV");
-    out.write_record(["log", "hidden", "size", "flown", "before", "tied", "plan", "plan_s", "after", "apart"])
-        .expect("a line");
-    for (number, p) in all.iter().enumerate() {
-        let (plan, plan_s, after) = match &p.after {
+impl Row for Planned {
+    const COLUMNS: &'static [&'static str] =
+        &["hidden", "size", "flown", "before", "tied", "plan", "plan_s", "after", "apart"];
+
+    fn fields(&self) -> Vec<String> {
+        let (plan, plan_s, after) = match &self.after {
             Some(Ok(after)) => (after.plan.clone(), format!("{:.0}", after.plan_s), says(&after.answer)),
             Some(Err(error)) => (format!("FAILED {error}"), String::new(), String::new()),
             None => Default::default(),
         };
         let flag = |yes: bool| usize::from(yes).to_string();
-        let row = [
-            number.to_string(),
-            p.hidden.id.clone(),
-            format!("{:.5}", p.hidden.size),
-            p.flown.join(" "),
-            said(&p.before),
-            flag(p.tied()),
+        vec![
+            self.hidden.id.clone(),
+            format!("{:.5}", self.hidden.size),
+            self.flown.join(" "),
+            said(&self.before),
+            flag(self.tied()),
             plan,
             plan_s,
             after,
-            if p.tied() { flag(p.apart()) } else { String::new() },
-        ];
-        out.write_record(row).expect("a line");
+            if self.tied() { flag(self.apart()) } else { String::new() },
+        ]
     }
-    out.flush().expect("the CSV");
+
+    fn line(&self) -> String {
+        let hidden = format!("{} {:.4}", self.hidden.id, self.hidden.size);
+        let first = said(&self.before);
+        let Some(after) = &self.after else { return format!("{hidden}  ->  {first}  {:.1} s", self.seconds) };
+        let (plan, last) = match after {
+            Ok(after) => (format!("{} ({:.0} s)", after.plan, after.plan_s), says(&after.answer)),
+            Err(error) => (format!("FAILED: {error}"), String::new()),
+        };
+        let verdict = if self.apart() { "apart" } else { "NOT APART" };
+        format!("{hidden}  ->  {first}  ->  {plan}  ->  {last}  {verdict}  {:.1} s", self.seconds)
+    }
 }

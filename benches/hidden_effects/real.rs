@@ -4,6 +4,7 @@ use crate::answer::Answer;
 use crate::args::Args;
 use crate::case::Group;
 use crate::judge::Judged;
+use crate::rows::Row;
 use crate::run::{self, Folder};
 use crate::truth::Vehicle;
 use crate::truth::effects::Hidden;
@@ -66,7 +67,14 @@ fn one(args: &Args, file: &str, log: &Log, effects: &[(&str, f64)]) -> Vec<Judge
     let put = effects.iter().filter(|(id, _)| !before.iter().any(|name| name == id)).map(|(id, size)| {
         let hidden = Hidden::sized(id, *size, &Vehicle::seed_class(), &mut rng);
         let (answer, seconds) = run::diagnose(args, &folder.path, &with(log, &hidden), &base);
-        let judged = Judged { group: Group::Real, hidden: vec![hidden], before: before.clone(), answer, seconds };
+        let judged = Judged {
+            group: Group::Real,
+            hidden: vec![hidden],
+            before: before.clone(),
+            answer,
+            seconds,
+            extended: None,
+        };
         println!("{file}  {}", judged.line());
         judged
     });

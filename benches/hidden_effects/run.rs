@@ -3,8 +3,10 @@
 use crate::answer::Answer;
 use crate::args::Args;
 use crate::case::Case;
+use crate::extended::{EXTENDED, Extended};
 use crate::judge::Judged;
-use crate::truth::hidden;
+use crate::rows::Row;
+use crate::truth::hidden::{self, Setting};
 use racer::flight::Log;
 use racer::model::vehicle::Vehicle;
 use std::path::{Path, PathBuf};
@@ -14,7 +16,7 @@ use std::time::Instant;
 /// Names of a log and of the vehicle that it is taken for.
 pub const LOG: &str = "log.mcap";
 pub const VEHICLE: &str = "base.toml";
-const OUT: &str = "out.json";
+pub const OUT: &str = "out.json";
 
 /// A folder for one log, which goes again unless it is kept.
 pub struct Folder {
@@ -47,7 +49,12 @@ pub fn case(case: &Case, args: &Args) -> Judged {
     let folder = Folder::new(args, &format!("{:04}", case.number));
     let log = hidden::fly(&case.flown, &case.hidden, &case.setting);
     let (answer, seconds) = diagnose(args, &folder.path, &log, &case.base.in_racer());
-    let judged = Judged { group: case.group, hidden: case.hidden.clone(), before: Vec::new(), answer, seconds };
+    let unseen = || {
+        hidden::fly(&case.flown, &case.hidden, &Setting { seed: case.setting.seed ^ 1, seconds: 60.0, ..case.setting })
+    };
+    let extended = Extended::of(args, &folder.path, unseen);
+    let hidden = case.hidden.clone();
+    let judged = Judged { group: case.group, hidden, before: Vec::new(), answer, seconds, extended };
     if args.keep.is_some() {
         let truth = format!("{}\n{case:#?}\n", judged.line());
         std::fs::write(folder.path.join("truth.txt"), truth).expect("the truth to keep");
@@ -62,7 +69,12 @@ pub fn diagnose(args: &Args, folder: &Path, log: &Log, base: &Vehicle) -> (Resul
     std::fs::write(folder.join(VEHICLE), toml::to_string(&base).expect("a vehicle is TOML")).expect("the vehicle");
     let _ = std::fs::remove_file(folder.join(OUT));
     let start = Instant::now();
-    let ran = run(args, folder, &["diagnose", LOG, "--vehicle", VEHICLE, "--json", OUT]);
+    let _ = std::fs::remove_file(folder.join(EXTENDED));
+    let mut asked = vec!["diagnose", LOG, "--vehicle", VEHICLE, "--json", OUT];
+    if args.extended {
+        asked.extend(["--extend", EXTENDED]);
+    }
+    let ran = run(args, folder, &asked);
     let seconds = start.elapsed().as_secs_f64();
     let answer = match (std::fs::read_to_string(folder.join(OUT)), ran) {
         (Ok(text), _) => Answer::read(&text),
@@ -80,12 +92,17 @@ pub fn write(folder: &Path, log: &Log) {
 
 /// Runs the program in `folder`; an error is the first it wrote.
 pub fn run(args: &Args, folder: &Path, arguments: &[&str]) -> Result<(), String> {
+    said(args, folder, arguments).map(|_| ())
+}
+
+/// What the program prints.
+pub fn said(args: &Args, folder: &Path, arguments: &[&str]) -> Result<String, String> {
     // A relative path would be looked for from the folder.
     let program = std::path::absolute(&args.racer).map_err(|error| error.to_string())?;
     let output = Command::new(&program).args(arguments).current_dir(folder).output();
     let output = output.map_err(|error| format!("{}: {error}", program.display()))?;
     if output.status.success() {
-        return Ok(());
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
     let error = String::from_utf8_lossy(&output.stderr);
     let line = error.lines().find(|line| !line.trim().is_empty()).unwrap_or("no message").to_string();

@@ -1,6 +1,7 @@
 //! What to hide and how long to train.
 
 use crate::sizes;
+use crate::truth::other::causes;
 use clap::Parser;
 use std::path::PathBuf;
 
@@ -17,6 +18,10 @@ pub struct Args {
     )]
     #[arg(value_parser = parse_case, allow_negative_numbers = true)]
     pub effects: Vec<(String, Option<f64>)>,
+    /// Race in the third truth, a quadrotor motor by motor: effects are its causes, each with a size. With `--draw` the
+    /// airframe of that number
+    #[arg(long)]
+    pub by_motor: bool,
     /// Budget of each training, min
     #[arg(long, default_value_t = 2.0)]
     pub minutes: f64,
@@ -64,7 +69,10 @@ impl Args {
         let track = self.track.as_ref().map_or(String::new(), |track| format!(" --track {track}"));
         let draw = self.draw.map_or(String::new(), |number| format!(" --draw {number}"));
         let (seeds, agents, seconds) = (self.seeds, self.agents, self.seconds);
-        format!("--effects {cases} {budget} --seeds {seeds} --agents {agents} --seconds {seconds}{track}{draw}")
+        let by_motor = if self.by_motor { " --by-motor" } else { "" };
+        format!(
+            "--effects {cases}{by_motor} {budget} --seeds {seeds} --agents {agents} --seconds {seconds}{track}{draw}"
+        )
     }
 
     /// Identifiers and sizes.
@@ -91,8 +99,16 @@ fn parse_case(text: &str) -> Result<(String, Option<f64>), String> {
         Some((id, size)) => (id, Some(size.parse().map_err(|_| format!("`{size}` is no size"))?)),
         None => (text, None),
     };
+    let by_motor = causes::KINDS.iter().any(|kind| kind.id == id);
+    if by_motor && size.is_some() {
+        return Ok((id.into(), size));
+    }
     if matches!(id, "none" | "all") || size.or_else(|| sizes::of(id)).is_some() && sizes::known(id) {
         return Ok((id.into(), size));
     }
-    Err(if sizes::known(id) { format!("{id} needs a size: {id}=SIZE") } else { format!("no effect `{id}`") })
+    Err(if sizes::known(id) || by_motor {
+        format!("{id} needs a size: {id}=SIZE")
+    } else {
+        format!("no effect `{id}`")
+    })
 }

@@ -2,9 +2,10 @@
 
 use crate::args::Args;
 use crate::truth::CONTROL_S;
-use crate::truth::hidden::{Craft, Flight, World};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use crate::truths::{Flown, Truth};
+use nalgebra::Vector3;
 use racer::base::lane::{LANES, Lane, Level, Portable};
+use racer::flight::pilot::Seen;
 use racer::learn::nn::{TILE_BLOCKS, TILE_SAMPLES};
 use racer::learn::policy::ACTIONS;
 use racer::model::dynamics::State;
@@ -28,8 +29,6 @@ const LONGEST_S: f64 = 20.0;
 const PLACE_M: f64 = 0.1;
 const HEADING_DEG: f64 = 5.0;
 const LEAST_CHARGE: f64 = 0.3;
-/// Time in which the independent simulator's pack goes from full to empty, s.
-const DISCHARGE_S: f64 = 300.0;
 
 /// How a race went.
 #[derive(Clone, Debug)]
@@ -43,7 +42,7 @@ pub struct Raced {
 }
 
 /// Races of `policy` in `world`; the first is nominal.
-pub fn race(policy: &Snapshot, world: &World, args: &Args) -> Vec<Raced> {
+pub fn race(policy: &Snapshot, world: &dyn Truth, args: &Args) -> Vec<Raced> {
     let about = &policy.about;
     // What is seen is the truth: nothing of the effects that the policy was trained with takes part in it.
     let plain = Vehicle { effects: Default::default(), ..about.vehicle.clone() };
@@ -63,7 +62,7 @@ pub fn in_racer(policy: &Snapshot) -> Raced {
     Raced { lap_s: flights.flights[0].lap_time(race.gates.len()), failure: None, path }
 }
 
-fn race_tile(policy: &Snapshot, race: &Race, world: &World, numbers: &[u32]) -> Vec<Raced> {
+fn race_tile(policy: &Snapshot, race: &Race, world: &dyn Truth, numbers: &[u32]) -> Vec<Raced> {
     let mut agents: Vec<Agent> = numbers.iter().map(|&number| Agent::new(race, world, number)).collect();
     let mut blocks: [Block<L>; TILE_BLOCKS] = std::array::from_fn(|b| race.empty_block((b * LANES) as u32));
     let mut seen = vec![0.0f32; OBSERVATIONS * TILE_SAMPLES];
@@ -85,7 +84,7 @@ fn race_tile(policy: &Snapshot, race: &Race, world: &World, numbers: &[u32]) -> 
 }
 
 struct Agent<'a> {
-    flight: Flight<'a>,
+    flight: Box<dyn Flown + 'a>,
     /// The last three actions, newest first.
     history: [[f32; ACTIONS]; 3],
     target: usize,
@@ -97,22 +96,14 @@ struct Agent<'a> {
 }
 
 impl<'a> Agent<'a> {
-    fn new(race: &Race, world: &'a World, number: u32) -> Self {
+    fn new(race: &Race, world: &'a dyn Truth, number: u32) -> Self {
         let mut rng = StdRng::seed_from_u64(u64::from(number));
         let mut normal = |sd: f64| if number == 0 { 0.0 } else { sd * rng.sample::<f64, _>(StandardNormal) };
         let place = race.start.position() + Vector3::new(normal(PLACE_M), normal(PLACE_M), 0.0);
         let heading = race.start.heading_rad() + normal(HEADING_DEG.to_radians());
         let charge = if number == 0 { 1.0 } else { rng.random_range(LEAST_CHARGE..1.0) };
-        let attitude = *UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading).quaternion();
-        // In the air above the ground, as races begin in racer's own simulator.
-        let craft = Craft {
-            position: place,
-            attitude: Quaternion::from(attitude.coords),
-            resting: false,
-            ..Craft::on_ground()
-        };
         Agent {
-            flight: Flight::new(world, craft, (1.0 - charge) * DISCHARGE_S, u64::from(number)),
+            flight: world.begin(place, heading, charge, u64::from(number)),
             history: [[0.0, 0.0, 0.0, -1.0]; 3],
             target: 0,
             steps: 0,
@@ -132,7 +123,7 @@ impl<'a> Agent<'a> {
         let max_rate = race.vehicle.max_rates_rad_s();
         // Body rates are not kept beside the filtered commands that make them.
         let [x, y, z] = std::array::from_fn(|k| seen.rates[k] / max_rate[k]);
-        let command = [x, y, z, self.flight.craft.u];
+        let command = [x, y, z, self.flight.throttle()];
         let state = State::new(seen.position, seen.velocity, seen.attitude, command, seen.voltage);
         block.craft.state.set_lane(lane, &state.map(|x| x as f32));
         block.gate.set_lane(lane, &race.gates[self.target]);
@@ -145,17 +136,17 @@ impl<'a> Agent<'a> {
     /// Holds `action` for a step, and judges the move by racer's own rules.
     fn step(&mut self, race: &Race, action: [f32; ACTIONS]) {
         let gate = self.gate(race);
-        let before = gate.locate(self.flight.craft.position.into());
+        let before = gate.locate(self.flight.seen().position);
         self.flight.hold(action.map(f64::from));
         self.history = [action, self.history[0], self.history[1]];
-        let position = self.flight.craft.position;
-        let crossing = crossing(before, gate.locate(position.into()), gate.radius);
+        let Seen { position, velocity, .. } = self.flight.seen();
+        let crossing = crossing(before, gate.locate(position), gate.radius);
         let since = self.steps as f64 + 1.0 - self.passes.last().copied().unwrap_or(0.0);
         let failure = if !position.iter().all(|&x| x.is_finite()) {
             Some("non_finite")
         } else if crossing.missed {
             Some("missed_gate")
-        } else if self.flight.craft.resting {
+        } else if self.flight.rests() {
             Some("ground")
         } else if (0..3).any(|k| !(race.volume[0][k]..=race.volume[1][k]).contains(&position[k])) {
             Some("left_volume")
@@ -171,8 +162,8 @@ impl<'a> Agent<'a> {
             self.target = (self.target + 1) % race.gates.len();
         }
         self.steps += 1;
-        let velocity = self.flight.craft.velocity;
-        self.path.push([position.x, position.y, position.z, velocity.x, velocity.y, velocity.z]);
+        let ([x, y, z], [vx, vy, vz]) = (position, velocity);
+        self.path.push([x, y, z, vx, vy, vz]);
         let lap_s = self.passes.get(race.gates.len()).map(|end| (end - self.passes[0]) * CONTROL_S);
         if failure.is_some() || lap_s.is_some() {
             self.ended = Some(Raced { lap_s, failure, path: std::mem::take(&mut self.path) });

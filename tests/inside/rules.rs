@@ -128,6 +128,32 @@ fn a_load_is_named_beside_the_mixers_part() {
     assert!((1.0..3.0).contains(&load.impact), "of a push of 12 m/s2: {}", load.impact);
 }
 
+/// Rule 5: thrust that a vortex ring takes is no other mass beside a fall of the vehicle's own thrust and drag by as
+/// much, which leave nothing of each other.
+#[test]
+fn a_mass_that_is_undone_has_no_name() {
+    let diagnosis = said_of([25, 49], 0.7507, 500.0, ("vortex_ring", 0.259));
+    let names = names(&diagnosis);
+    assert!(names.contains(&"propwash") && !names.contains(&"mass_or_density"), "{names:?}");
+}
+
+/// Rule 6: what nearly every stretch gains by is sure, though one gains a hundred times what others do.
+#[test]
+fn a_late_thrust_pays_on_unseen_flight() {
+    let diagnosis = said_of([25, 22], 0.5914, 1000.0, ("throttle_link", 0.019));
+    let late = diagnosis.findings.iter().find(|f| f.effect == "thrust_delay").expect("a late thrust");
+    assert_eq!(late.status, Status::Named);
+    assert!((late.parameters["delay"].value - 0.019).abs() < 5e-4, "{:?}", late.parameters);
+}
+
+/// Rule 4: what the form of an estimator's delay leaves is no scale of the accelerometer.
+#[test]
+fn what_an_estimator_leaves_is_its_own() {
+    let diagnosis = said_of([25, 55], 0.622, 500.0, ("velocity_delay", 0.049));
+    let names = names(&diagnosis);
+    assert!(names.contains(&"velocity_lag") && !names.contains(&"accel_scale"), "{names:?}");
+}
+
 /// Rule 3: an accelerometer that is turned, where the gyro is not, is neither vibration nor a bias beside it.
 #[test]
 fn an_accelerometer_that_is_turned_is_one_cause() {

@@ -45,7 +45,7 @@ pub fn fly(airframe: &Airframe, hidden: &[Hidden], setting: &Setting) -> Log {
 }
 
 /// What of a flight the pilot sees.
-fn seen(plant: &Plant, time_s: f64) -> Seen {
+pub fn seen(plant: &Plant, time_s: f64) -> Seen {
     let q = plant.attitude;
     Seen {
         time_s,

@@ -9,8 +9,6 @@ criteria! {
 CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were the stretches of time independent");
     /// Standard deviations from which one number of a difference is asked whether it pays on unseen flight.
     KNOWN_DEVIATIONS = 2.0, Theory("one in forty by chance");
-    /// Whitened squares of unseen flight that one stretch of time may count for or against a difference.
-    MOST_EVIDENCE = 10.0, Theory("one in 150 by chance; one fast leg is not all that a short flight knows of drag");
     /// Standard deviations between flights of one set that a difference of the sets has to be.
     BETWEEN_DEVIATIONS = 3.0, Assumed("two or three flights tell their spread badly");
     /// Share of a difference that every third of the time has to show.

@@ -8,6 +8,9 @@ criteria! {
     /// Standard deviations (over stretches of time) by which an effect has to lower the whitened squares of unseen
     /// flight.
     PAYS_DEVIATIONS = 2.0, Theory("one in forty by chance; four stretches that agree");
+    /// Whitened squares of unseen flight that one stretch of time may count for or against a cause, where the sum of
+    /// all is for it.
+    MOST_EVIDENCE = 10.0, Theory("one in 150 by chance; one fast leg is not all that a short flight knows of drag");
     /// Difference of a skew as fitted from what it is followed at through the flight, as a share of that, up to which
     /// both are one.
     SAME_SKEW_SHARE = 0.5, Assumed("windows of six seconds tell it to a few percent of what matters");

@@ -2,7 +2,7 @@
 
 use super::cause::MOVES;
 use super::channels::NAMES;
-use super::finding::Finding;
+use super::finding::{Finding, Status};
 use super::oscillation;
 use super::select::Selection;
 use super::structure::Structure;
@@ -70,10 +70,12 @@ pub fn doubt(
     let odds = |f: &Finding| f.explained.get(finding.channel).map_or(0.0, |s| s / (1.0 - s.min(0.999_999)));
     let largest = findings.iter().max_by(|a, b| odds(a).total_cmp(&odds(b)));
     let small = |l: &&Finding| !finding.explained.contains_key(MOVES) && odds(finding) < SMALL_BESIDE.get() * odds(l);
+    // No estimator is late by one lag, or by one delay: what it leaves is small, and is its own.
+    let estimated = |l: &Finding| l.has(Role::VelocityLag) && l.status != Status::Suspected;
     if let Some(largest) = largest.filter(small)
-        && unexplained.iter().any(|s| s.channel == finding.channel)
+        && (estimated(largest) || unexplained.iter().any(|s| s.channel == finding.channel))
     {
-        return Some(format!("small beside {}, where structure remains: it may make up for its form", largest.name));
+        return Some(format!("small beside {}, whose form it may make up for", largest.name));
     }
     // What swings pulls like a drag that comes late.
     let drag = effects::card(finding.effect).is_some_and(|card| card.kind == EffectKind::Drag);

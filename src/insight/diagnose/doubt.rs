@@ -53,6 +53,12 @@ fn cancelling(fitted: &FittedSelection, findings: &mut [Finding]) {
             findings[i].suspect(format!("it and {} cancel each other: this flight cannot tell either", other.name));
         }
     }
+    for (i, card) in cards {
+        if cancel::is_undone(fitted, card) {
+            findings[i]
+                .suspect("it only undoes a move of the vehicle's own numbers: this flight cannot tell it".into());
+        }
+    }
 }
 
 fn unshown(fitted: &FittedSelection, findings: &mut [Finding]) {
@@ -70,10 +76,8 @@ fn unpaid(fitted: &FittedSelection, findings: &mut [Finding]) {
     let mut cards = named(fitted, findings);
     cards.retain(|(_, card)| card.role != Role::CommandsLost && !followed(fitted, card));
     let places: Vec<Vec<usize>> = cards.iter().map(|(_, card)| fitted.places(card)).collect();
-    for ((i, _), deviations) in
-        cards.into_iter().zip(pays::pays(fitted, &unseen::parts(fitted.problem), &places, f64::INFINITY))
-    {
-        if deviations < PAYS_DEVIATIONS.get() {
+    for ((i, _), paid) in cards.into_iter().zip(pays::pays(fitted, &unseen::parts(fitted.problem), &places)) {
+        if paid.surely() < PAYS_DEVIATIONS.get() {
             findings[i].suspect("on flight that was not used for fitting it does not pay".into());
         }
     }

@@ -2,14 +2,36 @@
 
 use super::fitted::FittedSelection;
 use super::unseen::{begins, deviations, seen, squares, without};
+use crate::insight::criteria::unseen::MOST_EVIDENCE;
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use nalgebra::DMatrix;
 
+/// How surely an effect pays, in standard deviations.
+pub struct Paid {
+    /// By all that each stretch gains.
+    pub whole: f64,
+    /// By no more than [`MOST_EVIDENCE`] of each, for or against: one stretch that gains a thousand times what others do
+    /// makes nothing less sure.
+    pub limited: f64,
+}
+
+impl Paid {
+    fn of(gained: &[f64]) -> Self {
+        let most = MOST_EVIDENCE.get();
+        let limited: Vec<f64> = gained.iter().map(|d| d.clamp(-most, most)).collect();
+        Self { whole: deviations(gained), limited: deviations(&limited) }
+    }
+
+    /// By the better of both, where it pays at all.
+    pub fn surely(&self) -> f64 {
+        if self.whole > 0.0 { self.whole.max(self.limited) } else { self.whole }
+    }
+}
+
 /// How surely each of `effects` (the places of its numbers among the fitted ones) pays on unseen flight, in standard
-/// deviations, where each of `parts` in turn is unseen. No stretch tells more than `most` whitened squares, for or
-/// against.
-pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>], most: f64) -> Vec<f64> {
+/// deviations, where each of `parts` in turn is unseen.
+pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>]) -> Vec<Paid> {
     let (problem, point) = (fitted.problem, fitted.point());
     let whitener = &fitted.selection.whitener;
     let mut gained: Vec<Vec<f64>> = vec![Vec::new(); effects.len()];
@@ -24,10 +46,10 @@ pub fn pays(fitted: &FittedSelection, parts: &[Vec<bool>], effects: &[Vec<usize>
             let [a, b] = tried;
             let missing = if known(&a) <= known(&b) { a } else { b };
             let unseen = (0..problem.blocks).filter(|&b| out[b]);
-            gained.extend(unseen.map(|b| (missing[b] - with[b]).clamp(-most, most)));
+            gained.extend(unseen.map(|b| missing[b] - with[b]));
         }
     }
-    gained.iter().map(|differences| deviations(differences)).collect()
+    gained.iter().map(|differences| Paid::of(differences)).collect()
 }
 
 /// The numbers `x` with those at `own` as the base vehicle has them, mostly none: the others as they are, and the
@@ -49,4 +71,19 @@ pub fn removed(fitted: &FittedSelection, gram: &DMatrix<f64>, own: &[usize], x: 
         }
     }
     [plain, moved]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_stretch_that_gains_much_leaves_the_others_sure() {
+        let mut gained = [10.0; 40];
+        gained[3] = 30000.0;
+        let paid = Paid::of(&gained);
+        assert!(paid.whole < 2.0 && paid.surely() > 6.0);
+        gained[3] = -30000.0;
+        assert!(Paid::of(&gained).surely() < 0.0, "what loses more than it gains pays nothing");
+    }
 }

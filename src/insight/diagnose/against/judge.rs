@@ -8,7 +8,6 @@ use super::suspect::{FoundDifference, Suspect};
 use crate::base::stats::chi_squared_chance;
 use crate::insight::criteria::changed::{
     BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_IMPACT, KNOWN_DEVIATIONS, LASTING_KNOWN, LASTING_SHARE,
-    MOST_EVIDENCE,
 };
 use crate::insight::criteria::material::{LEAST_SENSOR_IMPACT, MATERIAL_SIZE};
 use crate::insight::criteria::unseen::PAYS_DEVIATIONS;
@@ -30,8 +29,8 @@ const PARTS: usize = 3;
 pub fn all(fitted: &FittedSelection, suspects: &[Suspect], found: &[FoundDifference]) -> Vec<Change> {
     let evident = |f: &FoundDifference| evident(fitted, places(fitted, &suspects[f.suspect]));
     let places: Vec<Vec<usize>> = found.iter().map(evident).collect();
-    let pays = pays(fitted, &thirds(fitted.problem), &places, MOST_EVIDENCE.get());
-    found.iter().zip(pays).map(|(found, pays)| judge(fitted, suspects, found, pays)).collect()
+    let pays = pays(fitted, &thirds(fitted.problem), &places);
+    found.iter().zip(pays).map(|(found, pays)| judge(fitted, suspects, found, pays.limited)).collect()
 }
 
 /// Judges a difference, of so many suspects; `pays` is by how sure it lowers the squares of unseen thirds of all

@@ -3,7 +3,7 @@
 use crate::insight::criteria::rival::ONE_LIKENESS;
 use crate::insight::criteria::unseen::{CANCEL_LEFT, CANCEL_LIKENESS};
 use crate::insight::diagnose::fitted::FittedSelection;
-use crate::insight::diagnose::numbers::span;
+use crate::insight::diagnose::numbers::{place, span};
 use crate::insight::diagnose::problem::ChannelValues;
 use crate::insight::estimate::gram::Grams;
 use crate::model::effects::Card;
@@ -14,12 +14,25 @@ pub struct Overlap(DMatrix<f64>);
 
 /// Those of `cards`.
 pub fn overlap(fitted: &FittedSelection, cards: &[&'static Card]) -> Overlap {
+    let own = |card: &&'static Card| span(card).map(|k| (k, 0.0)).collect();
+    of(fitted, &cards.iter().map(own).collect::<Vec<_>>())
+}
+
+/// Whether the numbers that could take an effect up have moved against the base vehicle's by its opposite.
+pub fn is_undone(fitted: &FittedSelection, card: &Card) -> bool {
+    let base = &fitted.problem.model.base;
+    let own = span(card).map(|k| (k, base[k])).collect();
+    let moves: Vec<(usize, f64)> = card.absorbed_by.iter().flat_map(|n| place(*n)).map(|k| (k, base[k])).collect();
+    !moves.is_empty() && cancel(&of(fitted, &[own, moves]).0, 0, 1)
+}
+
+/// Of changes of the fitted numbers from these values to what they are.
+fn of(fitted: &FittedSelection, from: &[Vec<(usize, f64)>]) -> Overlap {
     let (problem, point) = (fitted.problem, fitted.point());
-    let part = |card: &&'static Card| {
-        let none: Vec<(usize, f64)> = span(card).map(|k| (k, 0.0)).collect();
-        fitted.selection.whitener.apply(&problem.secant(&point.state, &point.x, &none, -1.0), &problem.rows)
+    let part = |from: &Vec<(usize, f64)>| {
+        fitted.selection.whitener.apply(&problem.secant(&point.state, &point.x, from, -1.0), &problem.rows)
     };
-    let parts: Vec<ChannelValues> = cards.iter().map(part).collect();
+    let parts: Vec<ChannelValues> = from.iter().map(part).collect();
     Overlap(Grams::new(&parts.iter().collect::<Vec<_>>(), &problem.rows, problem.blocks).sum)
 }
 

@@ -1,0 +1,63 @@
+//! The extended vehicle of a log: whether there is one, whether it trains, and what it predicts of a flight that nothing
+//! has seen.
+
+use crate::args::Args;
+use crate::judge::Judged;
+use crate::run::{self, VEHICLE};
+use racer::flight::Log;
+use serde_json::Value;
+use std::path::Path;
+
+/// Name of the extended vehicle in the folder of a log.
+pub const EXTENDED: &str = "extended.toml";
+const UNSEEN: &str = "unseen.mcap";
+/// As much of a training as shows that the vehicle can be flown.
+const TRAIN: &str = "train --vehicle extended.toml --steps 40000 --out run --threads 1 --set eval.agents=4 \
+    --set budget.snapshots=1 --set ppo.environments=64 --set ppo.rollout=16 --set ppo.minibatches=2";
+
+#[derive(Clone, Debug)]
+pub struct Extended {
+    pub trains: bool,
+    /// Signals of the unseen flight, and the error of the extended vehicle over that of the base, by size.
+    pub ratios: Vec<(String, f64)>,
+}
+
+impl Extended {
+    /// What became of the vehicle that the program wrote into `folder`; none where it wrote none.
+    pub fn of(args: &Args, folder: &Path, unseen: impl FnOnce() -> Log) -> Option<Result<Self, String>> {
+        folder.join(EXTENDED).exists().then(|| Self::tried(args, folder, &unseen()))
+    }
+
+    fn tried(args: &Args, folder: &Path, unseen: &Log) -> Result<Self, String> {
+        let _ = std::fs::remove_dir_all(folder.join("run"));
+        let trains = run::run(args, folder, &TRAIN.split_whitespace().collect::<Vec<_>>()).is_ok();
+        let bytes = racer::flight::write::mcap(unseen).map_err(|error| error.to_string())?;
+        std::fs::write(folder.join(UNSEEN), bytes).map_err(|error| error.to_string())?;
+        let asked = ["predict", UNSEEN, "--vehicle", VEHICLE, "--vehicle", EXTENDED, "--json"];
+        let said: Value = serde_json::from_str(&run::said(args, folder, &asked)?).map_err(|error| error.to_string())?;
+        let channels = said["channels"].as_array().ok_or("a prediction without channels")?;
+        let ratio = |channel: &Value| {
+            let of = |vehicle: usize| channel["scores"][vehicle]["rmse"].as_f64();
+            Some((channel["name"].as_str()?.to_string(), of(1)? / of(0)?))
+        };
+        let mut ratios: Vec<(String, f64)> = channels.iter().filter_map(ratio).collect();
+        ratios.sort_by(|a, b| a.1.total_cmp(&b.1));
+        Ok(Self { trains, ratios })
+    }
+}
+
+/// Whether there is one, else why not; whether it trains; and what it predicts best and worst.
+pub fn fields(judged: &Judged) -> Vec<String> {
+    let why = judged.answer.as_ref().ok().and_then(|answer| answer.not_extended.clone());
+    let mut fields = match &judged.extended {
+        None => vec![why.unwrap_or_default()],
+        Some(Err(error)) => vec![format!("FAILED {error}")],
+        Some(Ok(of)) => {
+            let ends = [of.ratios.first(), of.ratios.last()].into_iter().flatten();
+            let ends = ends.flat_map(|(name, ratio)| [name.clone(), format!("{ratio:.4}")]);
+            ["1".to_string(), usize::from(of.trains).to_string()].into_iter().chain(ends).collect()
+        }
+    };
+    fields.resize(6, String::new());
+    fields
+}
