@@ -27,6 +27,12 @@ def rows(name, **having):
         return [row for row in csv.DictReader(file) if all(row[k] == v for k, v in having.items())]
 
 
+def latest(name):
+    """The rows of the build that a CSV ends with."""
+    all_rows = rows(name)
+    return [row for row in all_rows if row["build"] == all_rows[-1]["build"]]
+
+
 def table(head, body):
     return "".join(f"| {' | '.join(map(str, line))} |\n" for line in [head, *body]).replace(
         "\n", f"\n|{'---|' * len(head)}\n", 1
@@ -174,19 +180,63 @@ def other_truth():
     """The third truth's logs of 100 s, by seed and build."""
     builds = {}
     for r in rows("other-truth"):
-        if r["seed"] in ("21", "22", "24", "25"):
-            builds.setdefault(f"seed {r['seed']}, build {r['build']}", []).append(r)
-    share = lambda of, said: wilson(sum(map(said, of)), len(of))
-    hidden = lambda of: [r for r in of if r["group"] in ("one", "two")]
-    clean = lambda of: [r for r in of if r["group"] == "none"]
+        if r["seed"] in ("21", "22", "24", "25", "26"):
+            builds.setdefault((r["seed"], r["build"]), []).append(r)
+    share = lambda of, said: wilson(sum(map(said, of)), len(of)) if of else "-"
+    right = lambda r: r["first_right"] == "1"
+    body = []
+    for (seed, build), of in builds.items():
+        hidden = [r for r in of if r["group"] in ("one", "two")]
+        clean = [r for r in of if r["group"] == "none"]
+        told = [r for r in hidden if r["nameable"] == "1"]
+        spurious = lambda r: r["spurious"] != ""
+        body.append((seed, build, share(of, spurious), share(clean, spurious), share(hidden, right), share(told, right),
+                     share(of, lambda r: r["unexplained"] == "1")))
+    head = ["seed", "build", "a name with nothing behind it", "clean: a false name", "one or two causes: right first"]
+    return table([*head, "of those it says could show", "told to be unexplained"], body)
+
+
+def other_groups():
+    """The last build's logs of the third truth, by what is hidden."""
+    of = latest("other-truth")
+    is_in = lambda *groups: [r for r in of if r["group"] in groups]
+    share = lambda which, said: wilson(sum(map(said, which)), len(which)) if which else "-"
+    right = lambda r: r["first_right"] == "1"
+    spurious = lambda r: r["spurious"] != ""
+    unexplained = lambda r: r["unexplained"] == "1"
+    all_found = lambda r: r["found"] == r["of"]
     body = [
-        ("a name with nothing behind it", *[share(of, lambda r: r["spurious"] != "") for of in builds.values()]),
-        ("clean: a false name", *[share(clean(of), lambda r: r["spurious"] != "") for of in builds.values()]),
-        ("one or two causes: right first", *[share(hidden(of), lambda r: r["first_right"] == "1")
-                                             for of in builds.values()]),
-        ("told to be unexplained", *[share(of, lambda r: r["unexplained"] == "1") for of in builds.values()]),
+        ("clean", len(is_in("none")), "a false name", share(is_in("none"), spurious)),
+        ("one", len(is_in("one")), "right first", share(is_in("one"), right)),
+        ("", "", "a wrong name", share(is_in("one"), spurious)),
+        ("two", len(is_in("two")), "one of them first", share(is_in("two"), right)),
+        ("", "", "both named or in a set", share(is_in("two"), all_found)),
+        ("small", len(is_in("small")), "a wrong name", share(is_in("small"), spurious)),
+        ("outside the catalogue", len(is_in("outside")), "told to be unexplained", share(is_in("outside"), unexplained)),
+        ("", "", "a confident name", share(is_in("outside"), spurious)),
     ]
-    return table(["", *builds], body)
+    return table(["hidden", "logs", "", "of them"], body)
+
+
+def other_extended():
+    """The last build's extended vehicles of the third truth: trained for a moment, and held against another flight."""
+    of = latest("other-truth")
+    written = [r for r in of if r["extended"] == "1"]
+    why = {}
+    for r in of:
+        if r["extended"] != "1":
+            why.setdefault(re.sub(r" \d+ %", " some", r["extended"]) or "nothing is named", []).append(r)
+    worse = lambda by: sum(float(r["worst_ratio"]) > 1 + by for r in written)
+    body = [
+        ("written", wilson(len(written), len(of))),
+        ("of these: train", wilson(sum(r["trains"] == "1" for r in written), len(written))),
+        ("a signal is predicted more than 2 % worse than by the base", wilson(worse(0.02), len(written))),
+        ("more than 10 % worse", wilson(worse(0.10), len(written))),
+        ("error of the signal that gains most, over the base's: median",
+         f"{statistics.median(float(r['best_ratio']) for r in written):.2f}"),
+        *((f"not written: {reason}", len(logs)) for reason, logs in sorted(why.items(), key=lambda x: -len(x[1]))),
+    ]
+    return table(["extended vehicles", "logs"], body)
 
 
 def measured_names():
@@ -215,7 +265,7 @@ def judgement(pair):
 
 def against(file="against"):
     """Pairs of flights, by what is said of them."""
-    pairs = rows(file)
+    pairs = latest(file) if "build" in rows(file)[0] else rows(file)
     without = [r for r in pairs if r["changed"].startswith("unchanged") or not r["changed"]]
     changed = [r for r in pairs if r not in without]
     count = lambda of, said: sum(judgement(r) == said for r in of)
@@ -234,7 +284,7 @@ def against(file="against"):
 
 def plan():
     """What planned flights tell apart."""
-    tied = [r for r in rows("plan") if r["apart"] and r["tied"] == "1"]
+    tied = [r for r in latest("plan") if r["apart"] and r["tied"] == "1"]
     lengths = [float(r["plan_s"]) for r in tied]
     apart = sum(r["apart"] == "1" for r in tied)
     return table(
@@ -276,7 +326,8 @@ def precision():
     return table(head, body)
 
 
-TABLES = [training, budgets, refinement, tried, loop, rotorpy, rotorpy_diagnosis, other_truth, against, plan, blackbox, precision,
+TABLES = [training, budgets, refinement, tried, loop, rotorpy, rotorpy_diagnosis, other_truth, other_groups,
+          other_extended, against, plan, blackbox, precision,
           measured_names, measured_unseen]
 MADE = {f.__name__: f for f in TABLES}
 

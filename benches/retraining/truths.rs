@@ -1,5 +1,5 @@
-//! Simulators to race in that share nothing with racer's: a vehicle with effects of the catalogue, and a quadrotor motor
-//! by motor under its flight controller, with causes in forms of their own.
+//! Simulators to race in that share nothing with racer's: a vehicle with effects of the catalogue, and a quadrotor
+//! motor by motor under its flight controller, with causes in forms of their own.
 
 use crate::truth::CONTROL_S;
 use crate::truth::effects::Hidden;

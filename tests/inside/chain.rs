@@ -2,6 +2,8 @@
 //! from what its motors were sent.
 
 use crate::truth::controlled::{Controlled, fly};
+use crate::truth::effects::Hidden;
+use crate::truth::hidden::{self, Setting, Style};
 use racer::flight::Log;
 use racer::insight::identify::result::Identification;
 use racer::insight::identify::{IdentifyOptions, identify};
@@ -11,6 +13,8 @@ use racer::insight::quality::check;
 use racer::model::thrust::specific_thrust;
 use racer::model::vehicle::Vehicle;
 use racer::model::vehicle::identified::ThrustSource;
+use rand::SeedableRng;
+use rand::rngs::StdRng;
 
 const SECONDS: f64 = 150.0;
 /// Of full thrust: over the motors, which is the goal; and over a command whose voltage the mixer compensates until the
@@ -120,4 +124,22 @@ fn a_prediction_gives_the_figures_of_an_identification() {
     let voltage = prediction.channels.iter().find(|c| c.name == "voltage").unwrap().score(0);
     assert_eq!(found.battery.score, Some(voltage));
     assert!(prediction.ahead[0].iter().all(|h| h.starts > 0 && h.attitude_deg > 0.0), "{:?}", prediction.ahead);
+}
+
+/// A pack that sags is measured under load from the first moment, where the battery's log begins in flight.
+#[test]
+fn a_pack_that_sags_begins_above_what_is_measured_first() {
+    let flown = crate::truth::Vehicle::draw(5);
+    let sag = [Hidden::sized("voltage_sag", 3.0, &flown, &mut StdRng::seed_from_u64(5))];
+    let setting = Setting { seed: 5, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
+    let mut log = hidden::fly(&flown, &sag, &setting);
+    let before = log.battery.time_s.iter().take_while(|t| **t < 15.0).count();
+    log.battery.time_s.drain(..before);
+    log.battery.rows.drain(..before);
+    let mut vehicle = flown.in_racer();
+    vehicle.effects.sizes.insert("voltage_sag".into(), [("v_full".to_string(), 3.0)].into());
+    let options = PredictOptions { part: DataPart::All, rate_cutoff_hz: 100.0, force_cutoff_hz: 30.0 };
+    let prediction = predict(&Data::new(vec![check(&log)]), &[&vehicle], &options);
+    let voltage = prediction.channels.iter().find(|c| c.name == "voltage").expect("a voltage").score(0);
+    assert!(voltage.rmse < 0.06, "{} V", voltage.rmse);
 }

@@ -26,8 +26,20 @@ pub fn parts(problem: &Problem) -> Vec<Vec<bool>> {
         };
         return (0..flights).map(of).collect();
     }
-    let part = |p: usize| (0..problem.blocks).map(|b| b * PARTS / problem.blocks.max(1) == p).collect();
-    (0..PARTS).map(part).collect()
+    thirds(problem)
+}
+
+/// Stretches of each third of every flight.
+pub fn thirds(problem: &Problem) -> Vec<Vec<bool>> {
+    let mut parts = vec![vec![false; problem.blocks]; PARTS];
+    for record in &problem.records {
+        let (Some(&first), Some(&last)) = (record.block.first(), record.block.last()) else { continue };
+        for block in first..=last {
+            let part = (block - first) as usize * PARTS / ((last - first) as usize + 1);
+            parts[part][block as usize] = true;
+        }
+    }
+    parts
 }
 
 /// Whether a number is the voltage that a flight begins with.

@@ -18,12 +18,10 @@ use crate::insight::diagnose::impact::integrated;
 use crate::insight::diagnose::pays::pays;
 use crate::insight::diagnose::problem::Problem;
 use crate::insight::diagnose::score::{ScoreTest, score};
+use crate::insight::diagnose::unseen::thirds;
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use crate::model::effects::{EffectKind, Role};
-
-/// Parts of the time of each flight that are left out in turn, and that a difference has to last over.
-const PARTS: usize = 3;
 
 /// Judges the differences that were `found`, each beside the others.
 pub fn all(fitted: &FittedSelection, suspects: &[Suspect], found: &[FoundDifference]) -> Vec<Change> {
@@ -86,19 +84,6 @@ fn places(fitted: &FittedSelection, suspect: &Suspect) -> Vec<usize> {
 fn evident(fitted: &FittedSelection, own: Vec<usize>) -> Vec<usize> {
     let known: Vec<usize> = own.iter().copied().filter(|&i| deviations(fitted, i) >= KNOWN_DEVIATIONS.get()).collect();
     if known.is_empty() { own } else { known }
-}
-
-/// Stretches of each third of every flight.
-fn thirds(problem: &Problem) -> Vec<Vec<bool>> {
-    let mut parts = vec![vec![false; problem.blocks]; PARTS];
-    for record in &problem.records {
-        let (Some(&first), Some(&last)) = (record.block.first(), record.block.last()) else { continue };
-        for block in first..=last {
-            let part = (block - first) as usize * PARTS / ((last - first) as usize + 1);
-            parts[part][block as usize] = true;
-        }
-    }
-    parts
 }
 
 /// Squared standard deviations of the differences at `own`, and the chance of as many.
