@@ -19,6 +19,7 @@ pub mod bends;
 pub mod candidates;
 pub mod cause;
 pub mod channels;
+mod constant;
 pub mod contrast;
 pub mod detectable;
 pub mod disambiguate;

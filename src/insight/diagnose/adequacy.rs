@@ -85,12 +85,15 @@ pub fn doubt(
     if let Some(left) = unexplained.iter().find(swing).filter(|_| drag) {
         return Some(format!("something swings in {}, which looks like drag too", left.channel));
     }
+    // What goes with the charge alone changes during a flight.
+    let by_charge =
+        effects::card(finding.effect).is_some_and(|card| card.kind == EffectKind::Battery && card.reads.is_empty());
     unexplained.iter().filter_map(|s| Some((s, explained(s)?))).find_map(|(left, explained)| {
         if left.channel == finding.channel && left.coloured_rms > MEMORY_RATIO.get() * explained {
             return Some(more(left));
         }
-        let with_time =
-            left.along.is_some_and(|along| along.ends_with("time") && left.along_share > CHANGING_SHARE.get());
+        let with_time = !by_charge
+            && left.along.is_some_and(|along| along.ends_with("time") && left.along_share > CHANGING_SHARE.get());
         with_time.then(|| format!("what it explains in {} changes during the flight", left.channel))
     })
 }

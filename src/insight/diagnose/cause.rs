@@ -3,7 +3,7 @@
 
 use super::channels::FORCE;
 use super::finding::{Finding, Status, Value};
-use super::fit::{covariance, fit};
+use super::fit::covariance;
 use super::fitted::FittedSelection;
 use super::numbers::{DRAG, THRUST, span};
 use super::problem::ChannelValues;
@@ -144,16 +144,9 @@ fn pushes(fitted: &FittedSelection, card: &Card, size: f64) -> f64 {
 }
 
 /// Size and standard deviation of an effect that takes the place of all moves of thrust and drag, near `size`.
-fn instead(fitted: &FittedSelection, card: &Card, size: f64) -> Option<(f64, f64)> {
-    let (problem, whitener) = (fitted.problem, &fitted.selection.whitener);
-    let own = span(card).start;
-    let mut x = fitted.selection.point.x.clone();
-    (0..x.len()).filter(|&k| of_interest(k)).for_each(|k| x[k] = problem.model.base[k]);
-    x[own] = size;
-    let kept = fitted.selection.point.free.iter().copied().filter(|&k| !of_interest(k));
-    let free: Vec<usize> = kept.chain([own]).collect();
-    let point = fit(problem, whitener, &x, &free);
-    let last = free.len() - 1;
-    let sd = covariance(problem, whitener, &point)?[(last, last)].max(0.0).sqrt();
-    Some((point.x[own], sd))
+fn instead(fitted: &FittedSelection, card: &'static Card, size: f64) -> Option<(f64, f64)> {
+    let caused = fitted.selection.with_cause(fitted.problem, card, size);
+    let last = caused.point.free.len() - 1;
+    let sd = covariance(fitted.problem, &caused.whitener, &caused.point)?[(last, last)].max(0.0).sqrt();
+    Some((caused.point.x[span(card).start], sd))
 }

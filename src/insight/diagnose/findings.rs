@@ -3,18 +3,16 @@
 
 use super::adequacy;
 use super::cause::MOVES;
-use super::channels::{PUSH, TURN};
+use super::constant::constant_errors;
 use super::drift;
 use super::finding::{Drift, Finding, Status, Value};
 use super::fitted::FittedSelection;
 use super::gusts;
 use super::judge::{Judged, judge};
 use super::lost::Lost;
-use super::numbers::span;
-use super::select::Added;
 use super::structure::{PLACE, Structure};
-use crate::insight::criteria::material::{LEAST_IMPACT, LEAST_SENSOR_IMPACT, MATERIAL_BIAS};
-use crate::model::effects::{self, EffectKind, ResidualChannel, Role, are_rivals};
+use crate::insight::criteria::material::{LEAST_IMPACT, LEAST_SENSOR_IMPACT};
+use crate::model::effects::{self, EffectKind, Role, are_rivals};
 
 /// What was found.
 pub struct Judgement {
@@ -64,6 +62,11 @@ impl Judgement {
         for finding in self.findings.iter_mut().filter(|f| f.status == Status::Named) {
             open(finding, &all, &self.unexplained);
         }
+        self.findings.iter_mut().for_each(or_parts);
+        let motor = self.findings.iter().any(|f| f.has(Role::OneMotor) && f.status != Status::Suspected);
+        for finding in self.findings.iter_mut().filter(|f| motor && f.explained.contains_key(MOVES)) {
+            finding.suspect("one motor gives less, and thrust falls by that as well".into());
+        }
         for left in structure.iter().filter(|s| adequacy::remembers(s)) {
             family(&mut self.findings, left.channel);
         }
@@ -71,6 +74,15 @@ impl Judgement {
         let open = structure.iter().any(|s| s.channel == "specific force z" && adequacy::remembers(s));
         for finding in self.findings.iter_mut().filter(|f| open && f.explained.contains_key(MOVES)) {
             finding.suspect("structure remains in specific force z".into());
+        }
+    }
+}
+
+/// What has parts may be each by itself, of one size by chance: every rate loop is late.
+fn or_parts(finding: &mut Finding) {
+    for part in effects::card(finding.effect).map_or(&[][..], |card| card.parts) {
+        if finding.status != Status::Suspected && !finding.members.contains(part) {
+            finding.or(part);
         }
     }
 }
@@ -129,24 +141,10 @@ fn count(finding: &mut Finding, lost: &Lost) {
     (finding.status, finding.why, finding.members) = (Status::Named, None, vec![finding.effect]);
 }
 
-/// Constant errors of the IMU, which every fit allows for.
-fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
-    let point = &fitted.selection.point;
-    let mut out = Vec::new();
-    for card in effects::acting(Role::ConstantError) {
-        let channel = if card.channels.contains(&ResidualChannel::Turn) { TURN } else { PUSH };
-        let size = span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
-        if !fitted.problem.rows[channel].is_empty() && size > MATERIAL_BIAS.get() * card.parameters[0].typical[0] {
-            out.push(judge(fitted, &Added { card, ties: Vec::new() }));
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::effects::Card;
+    use crate::model::effects::{Card, ResidualChannel};
 
     #[test]
     fn of_rivals_beside_structure_one_has_the_name() {

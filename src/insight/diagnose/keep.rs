@@ -1,5 +1,6 @@
 //! What of a selection is kept: the extended vehicle's part, in which every name has to hold by itself.
 
+use super::cause::MOVES;
 use super::channels::{FORCE, LIFT, VOLTAGE};
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
@@ -12,10 +13,17 @@ use super::{extend, shown};
 use crate::base::check::Check;
 use crate::model::effects::{self, Card, EffectKind, MODEL, Role};
 
+/// More than any share by which a part is worse.
+const OVER_ALL: f64 = 1e6;
+
 /// What of the selection is kept: what is only suspected is no part of the extended vehicle, nor what is not sure
-/// without that, nor what makes unseen flight worse. With the reason where what is left is worse for all that.
+/// without that, nor what makes unseen flight worse where what is left does not. With the reason why it is worse where
+/// nothing helps: then every name stands as it did.
 pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> (Selection, Option<String>) {
+    let caused = with_cause(problem, selection, findings);
+    let selection = caused.as_ref().unwrap_or(selection);
     let mut given: Vec<usize> = Vec::new();
+    let mut before_blame: Option<(Selection, Option<String>, Vec<Finding>)> = None;
     loop {
         let kept = Remaining::of(problem, selection, findings, &given);
         if let Some(finding) = leaning(&FittedSelection::new(problem, &kept.selection), findings) {
@@ -37,18 +45,32 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
         }
         let unseen = "on flight that was not used for fitting it";
         let rise = kept.worse.as_ref().map(|worse| format!("{} {:.0} % worse", worse.channel, 100.0 * worse.by));
-        let blamed = |f: &Finding| match &kept.worse {
+        let blamed = |f: &&mut Finding| match &kept.worse {
             Some(worse) => worse.blamed.is_some_and(|card| card.id == f.effect),
             None => effects::card(f.effect).is_some_and(|card| card.kind == EffectKind::Battery),
         };
-        let Some(finding) = findings.iter_mut().find(|f| f.status != Status::Suspected && blamed(f)) else {
-            return (kept.selection, rise.map(|rise| format!("{unseen} predicts {rise}")));
+        let why = rise.as_ref().map(|rise| format!("{unseen} predicts {rise}"));
+        let as_they_were = findings.to_vec();
+        let Some(finding) = named(findings).filter(|f| !f.explained.contains_key(MOVES)).find(blamed) else {
+            let Some((selection, why, as_they_were)) = before_blame else { return (kept.selection, why) };
+            findings.clone_from_slice(&as_they_were);
+            return (selection, why);
         };
+        before_blame.get_or_insert((kept.selection, why, as_they_were));
         finding.suspect(match rise {
             Some(rise) => format!("{unseen} makes {rise}"),
             None => "at rest the pack would be above the voltages that the thrust is told at".into(),
         });
     }
+}
+
+/// The selection with the named cause of all moves of thrust and drag in their place, where that is no worse.
+fn with_cause(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> Option<Selection> {
+    let cause = named(findings).find(|f| f.explained.contains_key(MOVES))?;
+    let card = effects::card(cause.effect)?;
+    let caused = selection.with_cause(problem, card, cause.parameters.get(card.parameters[0].name)?.value);
+    let wrong = |selection| Remaining::of(problem, selection, findings, &[]).wrong();
+    (wrong(&caused) <= wrong(selection)).then_some(caused)
 }
 
 /// A selection without what is not named, and what is wrong with that.
@@ -67,9 +89,11 @@ impl Remaining {
         Self { selection: kept, worse, flies }
     }
 
-    /// The share by which a channel is worse, and more than any where it is no vehicle.
+    /// The share by which a channel is worse; over all unseen flight more than in any part, and no vehicle more than
+    /// that.
     fn wrong(&self) -> f64 {
-        if self.flies { self.worse.as_ref().map_or(0.0, |worse| worse.by) } else { f64::MAX }
+        let by = |worse: &Worse| worse.by + if worse.whole { OVER_ALL } else { 0.0 };
+        if self.flies { self.worse.as_ref().map_or(0.0, by) } else { f64::MAX }
     }
 }
 
@@ -109,8 +133,14 @@ pub fn as_written(kept: &FittedSelection, findings: &mut [Finding]) {
 
 /// The least of the named findings that leans on what is only suspected.
 fn leaning<'a>(kept: &FittedSelection, findings: &'a mut [Finding]) -> Option<&'a mut Finding> {
-    let unsure = held(kept, findings).filter(|(_, card)| !stretches(kept, card).evident());
+    let unsure = held(kept, findings)
+        .filter(|(finding, card)| !finding.explained.contains_key(MOVES) && !stretches(kept, card).evident());
     unsure.map(|(finding, _)| finding).min_by(|a, b| a.impact.total_cmp(&b.impact))
+}
+
+/// Findings that are more than suspected.
+fn named(findings: &mut [Finding]) -> impl Iterator<Item = &mut Finding> {
+    findings.iter_mut().filter(|f| f.status != Status::Suspected)
 }
 
 /// The named findings that `kept` holds and fitted.
@@ -119,8 +149,7 @@ fn held<'a>(
     findings: &'a mut [Finding],
 ) -> impl Iterator<Item = (&'a mut Finding, &'static Card)> {
     let cards: Vec<&'static Card> = kept.selection.added.iter().map(|a| a.card).collect();
-    let named = findings.iter_mut().filter(|f| f.status != Status::Suspected && !f.has(Role::CommandsLost));
-    named.filter_map(move |f| {
+    named(findings).filter(|f| !f.has(Role::CommandsLost)).filter_map(move |f| {
         let card = effects::card(f.effect)?;
         cards.iter().any(|held| held.id == card.id).then_some((f, card))
     })

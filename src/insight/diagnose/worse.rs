@@ -8,6 +8,7 @@ use super::numbers::LOG_AT;
 use super::pays::removed;
 use super::problem::{ChannelValues, Problem};
 use super::unseen::{parts, rise, seen, without};
+use crate::base::check::Check;
 use crate::insight::estimate::gram::Grams;
 use crate::model::effects::{Card, EffectKind, MODEL, ResidualChannel};
 
@@ -18,6 +19,8 @@ pub struct Worse {
     pub channel: &'static str,
     /// Share by which its error rises.
     pub by: f64,
+    /// Whether it does over all unseen flight, not only in a part.
+    pub whole: bool,
     /// The effect without which it rises least, if any is to blame.
     pub blamed: Option<&'static Card>,
 }
@@ -63,9 +66,11 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
         as_given[..LOG_AT].copy_from_slice(&problem.model.base[..LOG_AT]);
         tried(&mut given, &as_given);
     }
-    // What one would go on with otherwise: of both the better one. Neither need be that in every part.
+    // What one would go on with otherwise: of both the better one, where the fitted one could fly. Neither need be that
+    // in every part.
     let total = |squares: &Squares, c: usize| squares[c].iter().sum::<f64>();
-    let reference = |c: usize| if total(&given, c) < total(&compact, c) { &given } else { &compact };
+    let flies = problem.model.vehicle_at(&base.x).check().is_ok();
+    let reference = |c: usize| if !flies || total(&given, c) < total(&compact, c) { &given } else { &compact };
     // All unseen flight, then each part: what pays in two thirds may fail in the third.
     let mut spans = parts(problem);
     spans.insert(0, vec![true; problem.blocks]);
@@ -76,7 +81,8 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
         let channels = (0..TURN).chain([VOLTAGE]).filter(|&c| c < FORCE + 3 || c == VOLTAGE);
         let rises = channels.filter_map(|c| Some((c, rise(&of(&reference(c)[c]), &of(&extended[c]))?)));
         let (c, by) = rises.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(Worse { number: c, channel: NAMES[c].0, by, blamed: blamed(fitted, c, span) })
+        let whole = span.iter().all(|s| *s);
+        Some(Worse { number: c, channel: NAMES[c].0, by, whole, blamed: blamed(fitted, c, span) })
     })
 }
 

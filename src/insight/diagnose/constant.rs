@@ -1,0 +1,43 @@
+//! Constant errors of the IMU, which every fit allows for, and what they may be instead.
+
+use super::channels::{PUSH, TURN};
+use super::fit::fit;
+use super::fitted::FittedSelection;
+use super::judge::{Judged, judge};
+use super::numbers::span;
+use super::select::Added;
+use super::unseen::deviations;
+use crate::insight::criteria::material::MATERIAL_BIAS;
+use crate::insight::criteria::rival::TIE_DEVIATIONS;
+use crate::model::effects::{self, Card, ResidualChannel, Role};
+
+/// Those that matter, judged.
+pub fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
+    let point = &fitted.selection.point;
+    let mut out = Vec::new();
+    for card in effects::acting(Role::ConstantError) {
+        let channel = if card.channels.contains(&ResidualChannel::Turn) { TURN } else { PUSH };
+        let size = span(card).map(|k| point.x[k].powi(2)).sum::<f64>().sqrt();
+        if !fitted.problem.rows[channel].is_empty() && size > MATERIAL_BIAS.get() * card.parameters[0].typical[0] {
+            out.push(judge(fitted, &Added { card, ties: taken_for(fitted, card) }));
+        }
+    }
+    out
+}
+
+/// Rivals of a constant error that explain the flights as well in its place: a flight at one throttle does not tell
+/// what goes with the throttle from what is always there.
+fn taken_for(fitted: &FittedSelection, card: &Card) -> Vec<&'static Card> {
+    let (problem, point) = (fitted.problem, fitted.point());
+    let rivals = card.rivals.iter().filter_map(|id| effects::card(id)).filter(|rival| rival.writes == card.writes);
+    let new = rivals.filter(|rival| fitted.places(rival).is_empty());
+    let as_good = |rival: &&'static Card| {
+        let mut x = point.x.clone();
+        span(card).for_each(|k| x[k] = problem.model.base[k]);
+        let rest = point.free.iter().copied().filter(|k| !span(card).contains(k));
+        let other = fit(problem, &fitted.selection.whitener, &x, &rest.chain(span(rival)).collect::<Vec<_>>());
+        let worse: Vec<f64> = other.cost.iter().zip(&point.cost).map(|(a, b)| a - b).collect();
+        deviations(&worse) < TIE_DEVIATIONS.get()
+    };
+    new.filter(as_good).collect()
+}
