@@ -72,7 +72,7 @@ fn main() {
         );
     }
     for (id, size) in args.cases() {
-        let hidden = [truths.hidden(&id, size)];
+        let hidden: Vec<_> = truths.hidden(&id, size).into_iter().collect();
         let setting = Setting { seed: 1, seconds: args.seconds, noise: 1.0, imu_hz: 500.0, style: Style::Excited };
         let (extended, found) = folder.diagnose(&id, &truths.fly(&hidden, &setting));
         println!("{id} {size}: {found}");
@@ -91,4 +91,5 @@ fn main() {
         }
     }
     table::print(&rows);
+    args.csv.iter().for_each(|path| table::write(path, &rows));
 }

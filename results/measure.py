@@ -35,9 +35,13 @@ COMMANDS = {
     "unmatched": ([], "0.5 h", f"{BENCH} --n 14 --seed 32 --tier unmatched --jobs 2"),
     "outside": ([], "0.5 h", f"{BENCH} --n 14 --seed 33 --tier outside --jobs 2"),
     "race": ([], "0.5 h", f"{BENCH} --n 12 --seed 34 --tier matched --style race --jobs 2"),
-    "other": ([], "0.3 h", f"{BENCH} --tier other --n 16 --seed 8 --seconds 100 --jobs 2"),
+    "other": ([], "1.5 h", f"{BENCH} --tier other --n 300 --seed 27 --seconds 100 --jobs 2 --extended "
+              "--csv results/other-truth.csv"),
     "retraining": ([], "0.5 h", "cargo bench --bench retraining -- --effects "
                    "rate_delay=0.06,voltage_sag=4,axial_inflow=1.5 --steps 14000000 --seeds 2 --agents 64"),
+    "retraining-by-motor": ([], "0.3 h", "cargo bench --bench retraining -- --by-motor --effects "
+                            "stick_filter=0.02,load_power=4,inflow_root=1.5 --steps 14000000 --seeds 4 --agents 64 "
+                            "--seconds 120 --csv results/retraining-by-motor.csv"),
     "betaflight": (["betaflight"], "0.5 h", f"{LOOP} betaflight {{betaflight}} runs/betaflight --seeds 1,2,3"),
     "ardupilot": (["ardupilot"], "0.7 h", f"{LOOP} ardupilot {{ardupilot}} runs/ardupilot --seeds 1,2,3"),
     "check": (["logs"], "5 min", "python3 tests/python/check_logs.py --data {logs} --out results/check-logs.csv"),

@@ -196,6 +196,30 @@ def other_truth():
     return table([*head, "of those it says could show", "told to be unexplained"], body)
 
 
+def retraining():
+    """Policies in the third truth, trained in the base vehicle and in the extended one: laps of each seed."""
+    cases = {}
+    for r in rows("retraining-by-motor"):
+        cases.setdefault((r["effect"], r["size"], r["trained"]), []).append(r)
+    body = []
+    for (effect, size, trained), seeds in cases.items():
+        times = [float(r["lap_s"]) for r in seeds if r["lap_s"]]
+        lap = f"{statistics.median(times):.2f}" if times else "-"
+        flown = wilson(sum(int(r["laps"]) for r in seeds), sum(int(r["flown"]) for r in seeds))
+        name = effect if effect == "none" else f"{effect} {size}"
+        body.append((name, trained, ", ".join(r["laps"] for r in seeds), flown, lap))
+    return table(["hidden", "trained in", "laps of 64, by seed", "of all", "lap, s, median of seeds"], body)
+
+
+def soak():
+    """Memory of an hour's training."""
+    of = [(int(r["seconds"]), float(r["rss_mib"])) for r in rows("soak")]
+    third = lambda a, b: [mib for t, mib in of if a * of[-1][0] / 3 <= t <= b * of[-1][0] / 3]
+    spans = [("first", third(0, 1)), ("second", third(1, 2)), ("last", third(2, 3))]
+    body = [(f"{name} 20 min", f"{statistics.median(mib):.1f}", f"{max(mib):.1f}") for name, mib in spans]
+    return table(["", "resident memory, MiB, median", "most"], body)
+
+
 def other_groups():
     """The last build's logs of the third truth, by what is hidden."""
     of = latest("other-truth")
@@ -326,7 +350,7 @@ def precision():
     return table(head, body)
 
 
-TABLES = [training, budgets, refinement, tried, loop, rotorpy, rotorpy_diagnosis, other_truth, other_groups,
+TABLES = [training, budgets, refinement, tried, loop, rotorpy, rotorpy_diagnosis, other_truth, other_groups, retraining, soak,
           other_extended, against, plan, blackbox, precision,
           measured_names, measured_unseen]
 MADE = {f.__name__: f for f in TABLES}

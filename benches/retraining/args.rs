@@ -5,11 +5,15 @@ use crate::truth::other::causes;
 use clap::Parser;
 use std::path::PathBuf;
 
+/// The vehicle as it is, with nothing hidden.
+const CLEAN: &str = "clean";
+
 /// Races policies in an independent simulator: trained without an effect, and with what `racer diagnose` made of it
 #[derive(Clone, Debug, Parser)]
 #[command(name = "retraining")]
 pub struct Args {
-    /// Identifiers of effects, each with its size or at one at which racing feels it: `rate_delay=0.02`; `all`; `none`
+    /// Identifiers of effects, each with its size or at one at which racing feels it: `rate_delay=0.02`; `all`; `none`;
+    /// `clean`, a flight of the vehicle as it is
     #[arg(
         long,
         value_name = "ID[=SIZE]",
@@ -43,6 +47,9 @@ pub struct Args {
     /// Length of the flight that is diagnosed, s
     #[arg(long, default_value_t = 300.0)]
     pub seconds: f64,
+    /// New file: a line of CSV each row
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
     /// Keep logs, vehicles, answers and runs in this folder, which is new or empty
     #[arg(long, value_name = "DIR")]
     pub keep: Option<PathBuf>,
@@ -80,6 +87,7 @@ impl Args {
         let given = self.effects.iter().flat_map(|(id, size)| match id.as_str() {
             "none" => Vec::new(),
             "all" => sizes::SIZES.iter().map(|(id, size)| (id.to_string(), *size)).collect(),
+            CLEAN => vec![(id.clone(), 0.0)],
             _ => vec![(id.clone(), size.or_else(|| sizes::of(id)).expect("the parser asks for a size"))],
         });
         given.collect()
@@ -103,7 +111,7 @@ fn parse_case(text: &str) -> Result<(String, Option<f64>), String> {
     if by_motor && size.is_some() {
         return Ok((id.into(), size));
     }
-    if matches!(id, "none" | "all") || size.or_else(|| sizes::of(id)).is_some() && sizes::known(id) {
+    if matches!(id, "none" | "all" | CLEAN) || size.or_else(|| sizes::of(id)).is_some() && sizes::known(id) {
         return Ok((id.into(), size));
     }
     Err(if sizes::known(id) || by_motor {

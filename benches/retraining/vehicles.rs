@@ -32,17 +32,17 @@ impl Truths {
         }
     }
 
-    /// What `id` of that size is there.
-    pub fn hidden(&self, id: &str, size: f64) -> Hidden {
+    /// What `id` of that size is there; nothing where there is no size.
+    pub fn hidden(&self, id: &str, size: f64) -> Option<Hidden> {
         let mut rng = StdRng::seed_from_u64(1);
-        match self {
+        (size != 0.0).then(|| match self {
             Truths::Effects(vehicle) => Hidden::sized(id, size, vehicle, &mut rng),
             Truths::ByMotor(_) => {
                 let mut cause = causes::draw(id, 1.0, &mut rng);
                 cause.size = size;
                 cause
             }
-        }
+        })
     }
 
     pub fn world<'a>(&'a self, hidden: &'a [Hidden]) -> Box<dyn Truth + 'a> {
