@@ -80,8 +80,8 @@ pub struct Args {
     /// Ask for the extended vehicle as well, train it for a moment, and hold it against a flight that nothing has seen
     #[arg(long)]
     pub extended: bool,
-    /// Every log in a line of CSV, as each is done; what the file has of this build and these flights is not done again.
-    /// With `--criteria`, the table
+    /// Every log in a line of CSV, as each is done; what the file has of this build and these flights is not done
+    /// again. With `--criteria`, the table
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
     /// What the rows call the program [default: the commit here]

@@ -1,5 +1,5 @@
-//! The extended vehicle of a log: whether there is one, whether it trains, and what it predicts of a flight that nothing
-//! has seen.
+//! The extended vehicle of a log: whether there is one, whether it trains, and what it predicts of a flight that
+//! nothing has seen.
 
 use crate::args::Args;
 use crate::judge::Judged;

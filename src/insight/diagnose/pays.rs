@@ -11,8 +11,8 @@ use nalgebra::DMatrix;
 pub struct Paid {
     /// By all that each stretch gains.
     pub whole: f64,
-    /// By no more than [`MOST_EVIDENCE`] of each, for or against: one stretch that gains a thousand times what others do
-    /// makes nothing less sure.
+    /// By no more than [`MOST_EVIDENCE`] of each, for or against: one stretch that gains a thousand times what others
+    /// do makes nothing less sure.
     pub limited: f64,
 }
 

@@ -45,7 +45,8 @@ impl Selection {
         Self { point: fit::fit(problem, &self.whitener, &x, &free), ..self }
     }
 
-    /// The same with an effect in the place of all moves of thrust and drag against the base vehicle, fitted from `size`.
+    /// The same with an effect in the place of all moves of thrust and drag against the base vehicle, fitted from
+    /// `size`.
     pub fn with_cause(&self, problem: &Problem, card: &'static Card, size: f64) -> Self {
         let (own, moves) = (span(card).start, |k: &usize| THRUST.contains(k) || DRAG.contains(k));
         let mut x = self.point.x.clone();
