@@ -10,7 +10,7 @@ import matplotlib
 import tables
 
 matplotlib.use("svg")
-matplotlib.rcParams["svg.hashsalt"] = "racer"
+matplotlib.rcParams.update({"svg.hashsalt": "racer", "svg.fonttype": "none"})
 from matplotlib import pyplot  # noqa: E402
 
 # What every vehicle of the third truth has; neither right nor wrong.

@@ -180,7 +180,7 @@ def other_truth():
     """The third truth's logs of 100 s, by seed and build."""
     builds = {}
     for r in rows("other-truth"):
-        if r["seed"] in ("21", "22", "24", "25", "26"):
+        if r["seed"] in ("21", "22", "24", "25", "26", "27"):
             builds.setdefault((r["seed"], r["build"]), []).append(r)
     share = lambda of, said: wilson(sum(map(said, of)), len(of)) if of else "-"
     right = lambda r: r["first_right"] == "1"
