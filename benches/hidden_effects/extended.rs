@@ -4,6 +4,7 @@
 use crate::args::Args;
 use crate::judge::Judged;
 use crate::run::{self, VEHICLE};
+use crate::truth::hidden::Setting;
 use racer::flight::Log;
 use serde_json::Value;
 use std::path::Path;
@@ -11,6 +12,8 @@ use std::path::Path;
 /// Name of the extended vehicle in the folder of a log.
 pub const EXTENDED: &str = "extended.toml";
 const UNSEEN: &str = "unseen.mcap";
+/// Length of the flight that nothing has seen, s.
+const UNSEEN_S: f64 = 60.0;
 /// As much of a training as shows that the vehicle can be flown.
 const TRAIN: &str = "train --vehicle extended.toml --steps 40000 --out run --threads 1 --set eval.agents=4 \
     --set budget.snapshots=1 --set ppo.environments=64 --set ppo.rollout=16 --set ppo.minibatches=2";
@@ -23,9 +26,16 @@ pub struct Extended {
 }
 
 impl Extended {
-    /// What became of the vehicle that the program wrote into `folder`; none where it wrote none.
-    pub fn of(args: &Args, folder: &Path, unseen: impl FnOnce() -> Log) -> Option<Result<Self, String>> {
-        folder.join(EXTENDED).exists().then(|| Self::tried(args, folder, &unseen()))
+    /// What became of the vehicle that the program wrote into `folder` of a flight of `setting`; none where it wrote
+    /// none. The other flight is flown by `fly`, and only for a vehicle.
+    pub fn of(
+        args: &Args,
+        folder: &Path,
+        setting: &Setting,
+        fly: impl FnOnce(&Setting) -> Log,
+    ) -> Option<Result<Self, String>> {
+        let unseen = Setting { seed: setting.seed ^ 1, seconds: UNSEEN_S, ..*setting };
+        folder.join(EXTENDED).exists().then(|| Self::tried(args, folder, &fly(&unseen)))
     }
 
     fn tried(args: &Args, folder: &Path, unseen: &Log) -> Result<Self, String> {

@@ -15,9 +15,6 @@ use rand::{RngExt, SeedableRng};
 /// Share of its smallest size that a cause has which nobody would notice.
 const SMALL: f64 = 0.15;
 
-/// Length of the flight that the extended vehicle is held against, s.
-const UNSEEN_S: f64 = 60.0;
-
 /// Draws, flies, diagnoses and judges log `number`.
 pub fn case(number: usize, args: &Args) -> Judged {
     let seed = args.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (number as u64).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -41,9 +38,8 @@ pub fn case(number: usize, args: &Args) -> Judged {
     // Its rate loop is no fault, whatever is hidden besides.
     let own = causes::OWN.into_iter().filter(|name| hidden.iter().all(|h| !h.is(name)));
     let before = own.map(str::to_string).collect();
-    // Flown only where there is a vehicle to predict it.
-    let unseen = || fly(&airframe, &hidden, &Setting { seed: setting.seed ^ 1, seconds: UNSEEN_S, ..setting });
-    let extended = Extended::of(args, &folder.path, unseen);
+    let unseen = |setting: &Setting| fly(&airframe, &hidden, setting);
+    let extended = Extended::of(args, &folder.path, &setting, unseen);
     let judged = Judged { group, hidden, before, answer, seconds, extended };
     if args.keep.is_some() {
         let truth = format!("{}\n{airframe:#?}\n{setting:#?}\n", judged.line());

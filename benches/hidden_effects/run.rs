@@ -16,7 +16,7 @@ use std::time::Instant;
 /// Names of a log and of the vehicle that it is taken for.
 pub const LOG: &str = "log.mcap";
 pub const VEHICLE: &str = "base.toml";
-pub const OUT: &str = "out.json";
+const OUT: &str = "out.json";
 
 /// A folder for one log, which goes again unless it is kept.
 pub struct Folder {
@@ -49,10 +49,8 @@ pub fn case(case: &Case, args: &Args) -> Judged {
     let folder = Folder::new(args, &format!("{:04}", case.number));
     let log = hidden::fly(&case.flown, &case.hidden, &case.setting);
     let (answer, seconds) = diagnose(args, &folder.path, &log, &case.base.in_racer());
-    let unseen = || {
-        hidden::fly(&case.flown, &case.hidden, &Setting { seed: case.setting.seed ^ 1, seconds: 60.0, ..case.setting })
-    };
-    let extended = Extended::of(args, &folder.path, unseen);
+    let unseen = |setting: &Setting| hidden::fly(&case.flown, &case.hidden, setting);
+    let extended = Extended::of(args, &folder.path, &case.setting, unseen);
     let hidden = case.hidden.clone();
     let judged = Judged { group: case.group, hidden, before: Vec::new(), answer, seconds, extended };
     if args.keep.is_some() {

@@ -5,7 +5,7 @@ use super::channels::FORCE;
 use super::finding::{Finding, Status, Value};
 use super::fit::covariance;
 use super::fitted::FittedSelection;
-use super::numbers::{DRAG, THRUST, span};
+use super::numbers::{THRUST, is_force, span};
 use super::problem::ChannelValues;
 use crate::base::stats::{NORMAL_95, mean};
 use crate::insight::criteria::drifted::{CAUSE_ACCOUNTS, CAUSE_TIE, CAUSE_TIE_SHARE, MOVED_DEVIATIONS};
@@ -18,10 +18,6 @@ use std::collections::BTreeMap;
 
 /// What such an effect explains.
 pub const MOVES: &str = "moves of thrust and drag against the base vehicle";
-
-fn of_interest(k: usize) -> bool {
-    THRUST.contains(&k) || DRAG.contains(&k)
-}
 
 /// The effect whose absorption accounts for the move of thrust and drag.
 pub fn find(fitted: &FittedSelection) -> Option<Finding> {
@@ -76,7 +72,7 @@ impl<'a> Moved<'a> {
         let (numbers, base) = (&fitted.problem.model.numbers, &fitted.problem.model.base);
         let (free, x) = (&fitted.selection.point.free, &fitted.selection.point.x);
         let own: Vec<usize> = (0..free.len()).collect();
-        let (main, rest): (Vec<usize>, Vec<usize>) = own.iter().partition(|i| of_interest(free[**i]));
+        let (main, rest): (Vec<usize>, Vec<usize>) = own.iter().partition(|i| is_force(free[**i]));
         let prior = |which: &[usize]| -> Vec<f64> { which.iter().map(|&i| numbers[free[i]].trust.powi(-2)).collect() };
         let inner = inverse(&Grams::pick(sum, &rest, &rest), &prior(&rest))?;
         let cross = Grams::pick(sum, &rest, &main);

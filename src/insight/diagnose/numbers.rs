@@ -50,6 +50,11 @@ pub fn span(card: &Card) -> Range<usize> {
     EFFECTS + span.start..EFFECTS + span.end
 }
 
+/// Whether a number is of the compact model's thrust or drag.
+pub fn is_force(k: usize) -> bool {
+    THRUST.contains(&k) || DRAG.contains(&k)
+}
+
 /// Where a number of the compact model is.
 pub fn place(number: CompactNumber) -> Range<usize> {
     let time = |k: usize| TAU.start + k..TAU.start + k + 1;

@@ -4,7 +4,7 @@ use super::bend::bend;
 use super::bends::{self, is_form};
 use super::candidates::{Candidate, base_numbers, candidates, causes, renewed};
 use super::fit::{self, FitPoint};
-use super::numbers::{DRAG, THRUST, span};
+use super::numbers::{is_force, span};
 use super::problem::{ChannelValues, Problem};
 use super::rank::{Reach, rank};
 use super::size::is_material;
@@ -48,11 +48,11 @@ impl Selection {
     /// The same with an effect in the place of all moves of thrust and drag against the base vehicle, fitted from
     /// `size`.
     pub fn with_cause(&self, problem: &Problem, card: &'static Card, size: f64) -> Self {
-        let (own, moves) = (span(card).start, |k: &usize| THRUST.contains(k) || DRAG.contains(k));
+        let own = span(card).start;
         let mut x = self.point.x.clone();
-        (0..x.len()).filter(moves).for_each(|k| x[k] = problem.model.base[k]);
+        (0..x.len()).filter(|k| is_force(*k)).for_each(|k| x[k] = problem.model.base[k]);
         x[own] = size;
-        let free: Vec<usize> = self.point.free.iter().copied().filter(|k| !moves(k)).chain([own]).collect();
+        let free: Vec<usize> = self.point.free.iter().copied().filter(|k| !is_force(*k)).chain([own]).collect();
         let mut caused = self.but(problem, &[]);
         caused.point = fit::fit(problem, &self.whitener, &x, &free);
         caused.added.push(Added { card, ties: Vec::new() });
