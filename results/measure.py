@@ -53,7 +53,7 @@ COMMANDS = {
 }
 
 # Steps that two idle Sapphire Rapids cores make in so many minutes (0.62 M a second); seeds.
-TRAININGS = {"0.5": (18_600_000, 8), "1": (37_200_000, 4), "5": (186_000_000, 4), "15": (558_000_000, 4)}
+TRAININGS = {"0.5": (18_600_000, 8), "1": (37_200_000, 8), "5": (186_000_000, 8), "15": (558_000_000, 4)}
 COLUMNS = ["minutes", "seed", "steps_million", "fixed_percent", "lap_s", "lap_p05_s", "lap_p95_s", "best_s",
            "random_percent", "saturated_percent", "change_sq", "build"]
 

@@ -238,8 +238,11 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         let open = Reserved::new(&folder.path().join("a")).unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-        remove_leftovers(folder.path());
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        // Windows removes no file that is open.
+        if cfg!(unix) {
+            remove_leftovers(folder.path());
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        }
         drop(open);
         assert!(new_folder(&folder.path().join("x/y")).is_ok());
         assert!(Reserved::new(&folder.path().join("none/a")).is_err());
@@ -256,6 +259,8 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
     }
 
+    // Elsewhere the folder of an open file stays.
+    #[cfg(unix)]
     #[test]
     fn failures_name_what_was_to_be_written() {
         let folder = tempfile::tempdir().unwrap();

@@ -2,8 +2,8 @@
 
 use crate::base::fsio;
 use std::io::Read;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
 
 static ASKED: AtomicBool = AtomicBool::new(false);
 /// What the first Ctrl-C is answered with; none where it ends the process.
@@ -14,7 +14,7 @@ static REMARK: Mutex<Option<&'static str>> = Mutex::new(None);
 pub fn install() {
     // A file beyond what `ulimit -f` allows is an error of the write, told like a full disk, and no end without a word.
     #[cfg(unix)]
-    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::<AtomicBool>::default());
     let _ = ctrlc::set_handler(|| {
         let remark = REMARK.lock().ok().and_then(|remark| *remark);
         match remark {

@@ -160,7 +160,7 @@ fn advantages_with_termination_and_truncation() {
         (0..x.len() / lanes * LANES).map(|i| at(i).unwrap_or(0.0)).collect()
     };
     let bits = |value: &Value| -> Vec<u16> {
-        let row = |row: &Value| flat(row).iter().enumerate().map(|(i, &yes)| (yes as u16) << i).sum();
+        let row = |row: &Value| flat(row).iter().enumerate().map(|(i, &yes)| (yes as u16) << i).sum::<u16>();
         value.as_array().expect("rows").iter().map(row).collect()
     };
     let expected = block(&golden["advantages"]);

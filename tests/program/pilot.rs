@@ -1,14 +1,14 @@
 //! `racer pilot` over real links on this machine. Whether it keeps time depends on the machine: asked is only that the
 //! flight begins, and ends for a reason.
 
+use crate::support::racer;
 use crate::support::tongue::{Speech, Tongue};
 use crate::support::vehicle::Peer;
-use crate::support::{racer, skipped};
 use assert_cmd::cargo::CommandCargoExt;
 use racer::flight::live::Mission;
 use racer::race::onboard::Surroundings;
 use racer::race::snapshot::Snapshot;
-use std::io::{Read, Write};
+use std::io::Read;
 use std::net::{TcpListener, UdpSocket};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -124,6 +124,8 @@ fn a_link_that_goes_away_ends_the_flight() {
 #[cfg(unix)]
 #[test]
 fn over_msp_on_a_serial_line() {
+    use crate::support::skipped;
+    use std::io::Write;
     let script = "import os, sys, tty\n\
                   ours, theirs = os.openpty()\n\
                   tty.setraw(ours)\n\

@@ -1,6 +1,7 @@
 //! Studies as a user meets them: what a file spans, what is refused before anything starts, and that interruptions
 //! leave no trace in the tables.
 
+#[cfg(unix)]
 mod slurm;
 
 use crate::support::racer;

@@ -122,7 +122,8 @@ fn quoted(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 
-#[cfg(test)]
+// Slurm is of Unix only, and so are its paths.
+#[cfg(all(test, unix))]
 mod tests {
     use super::*;
 

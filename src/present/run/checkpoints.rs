@@ -114,8 +114,12 @@ impl Checkpoints {
 
     /// Removes them all: the run is finished.
     pub fn remove(self) {
+        let Self { folder, _lock, .. } = self;
         // One that stays does no harm.
-        let _ = fs::remove_dir_all(&self.folder);
+        let _ = fs::remove_dir_all(&folder);
+        // Windows keeps the folder of an open file.
+        drop(_lock);
+        let _ = fs::remove_dir(&folder);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Serial lines, raw: every byte as it is, none held back.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io;
 use std::path::Path;
 
@@ -11,7 +11,7 @@ pub fn open(path: &Path, baud: Option<u32>) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt;
     // It must not become the terminal that this program is controlled by.
     let no_terminal = rustix::fs::OFlags::NOCTTY.bits() as i32;
-    let file = OpenOptions::new().read(true).write(true).custom_flags(no_terminal).open(path)?;
+    let file = File::options().read(true).write(true).custom_flags(no_terminal).open(path)?;
     let mut settings = tcgetattr(&file)?;
     settings.make_raw();
     if let Some(baud) = baud {
