@@ -50,6 +50,7 @@ pub mod numbers;
 pub mod one_motor;
 pub mod ordinary;
 pub mod oscillation;
+mod own_numbers;
 pub mod pays;
 pub mod place;
 pub mod predict;

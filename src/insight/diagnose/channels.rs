@@ -11,6 +11,8 @@ pub const LIFT: usize = FORCE + 2;
 pub const TURN: usize = 6;
 pub const PUSH: usize = 9;
 pub const VOLTAGE: usize = 12;
+/// What a vehicle predicts: rates, specific force and voltage. Turns and pushes are the sensors' own.
+pub const OF_VEHICLE: [usize; 7] = [0, 1, 2, 3, 4, 5, VOLTAGE];
 
 /// What a channel compares.
 pub fn kind(channel: usize) -> ResidualChannel {

@@ -1,10 +1,10 @@
 //! What of a selection is kept: the extended vehicle's part, in which every name has to hold by itself.
 
 use super::cause::MOVES;
-use super::channels::{FORCE, LIFT, VOLTAGE};
+use super::channels::LIFT;
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
-use super::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST};
+use super::own_numbers::{like, own, unpaid};
 use super::problem::Problem;
 use super::replication::stretches;
 use super::select::Selection;
@@ -31,7 +31,13 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
             continue;
         }
         if kept.wrong() == 0.0 {
-            return (kept.selection, None);
+            let unpaid = unpaid(problem, &kept.selection);
+            let together = (unpaid.len() > 1).then(|| unpaid.concat());
+            let mut more = together.into_iter().chain(unpaid).map(|group| [&given[..], &group].concat());
+            let no_worse = |group: &Vec<usize>| Remaining::of(problem, selection, findings, group).wrong() == 0.0;
+            let Some(group) = more.find(no_worse) else { return (kept.selection, None) };
+            given = group;
+            continue;
         }
         // Before an effect is to blame, the vehicle's own numbers: flights need not tell them as well as the base does.
         let channel = kept.worse.as_ref().map_or(LIFT, |worse| worse.number);
@@ -106,22 +112,6 @@ fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
         None => MODEL.iter().any(|of_vehicle| of_vehicle.id == card.id),
     };
     selection.added.iter().map(|a| a.card).filter(out).map(|card| card.id).collect()
-}
-
-/// The compact model's numbers of a channel: how a rate goes to its command, drag of an axis, thrust, discharge.
-fn own(channel: usize) -> Vec<usize> {
-    match channel {
-        VOLTAGE => vec![DISCHARGE],
-        LIFT => THRUST.collect(),
-        _ if channel < FORCE => vec![TAU.start + channel, MAX_RATE.start + channel],
-        _ => vec![DRAG.start + channel - FORCE],
-    }
-}
-
-/// Those of all channels of its kind: rates, or forces with the voltage.
-fn like(channel: usize) -> Vec<usize> {
-    let rates = |k: &usize| (TAU.start..TAU.end - 1).contains(k) || MAX_RATE.contains(k);
-    (0..=DISCHARGE).filter(|k| rates(k) == (channel < FORCE)).collect()
 }
 
 /// Sizes in the report are those of the extended vehicle. Lost commands are counted, and not fitted.

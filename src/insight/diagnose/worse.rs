@@ -1,7 +1,7 @@
 //! Never worse: whether the extended model predicts unseen flight, all of it or a part, worse in any channel than the
 //! better of the vehicle that was given and the compact model fitted to the same flights; and which effect does it.
 
-use super::channels::{CHANNELS, FORCE, NAMES, TURN, VOLTAGE, kind};
+use super::channels::{CHANNELS, NAMES, OF_VEHICLE, kind};
 use super::fit::FitPoint;
 use super::fitted::FittedSelection;
 use super::numbers::LOG_AT;
@@ -77,9 +77,7 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
     spans.iter().find_map(|span| {
         let of =
             |squares: &[f64]| -> Vec<f64> { squares.iter().zip(span).filter(|(_, s)| **s).map(|(x, _)| *x).collect() };
-        // What a vehicle predicts: the kinematics are the sensors' own.
-        let channels = (0..TURN).chain([VOLTAGE]).filter(|&c| c < FORCE + 3 || c == VOLTAGE);
-        let rises = channels.filter_map(|c| Some((c, rise(&of(&reference(c)[c]), &of(&extended[c]))?)));
+        let rises = OF_VEHICLE.into_iter().filter_map(|c| Some((c, rise(&of(&reference(c)[c]), &of(&extended[c]))?)));
         let (c, by) = rises.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let whole = span.iter().all(|s| *s);
         Some(Worse { number: c, channel: NAMES[c].0, by, whole, blamed: blamed(fitted, c, span) })
