@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Draws the figures of RESULTS.md that no command of the program draws, from the CSV files beside this script.
 
-    python3 results/figures.py        needs matplotlib; writes results/soak.svg and results/confusion-other-truth.svg
+    python3 results/figures.py        needs matplotlib; writes soak.svg, confusion-other-truth.svg and learning.svg
 """
 
 import collections
+import statistics
 
 import matplotlib
 import tables
@@ -31,6 +32,30 @@ def soak():
     axes.set(xlabel="minutes of training", ylabel="resident memory, MiB", ylim=(0, None))
     axes.grid(alpha=0.3)
     save(figure, "soak.svg")
+
+
+def learning():
+    """Laps from the pad and lap time of the snapshots of trainings of half a minute, one and five, a line a seed."""
+    rows = tables.rows("learning")
+    figure, axes = pyplot.subplots(2, 3, figsize=(9, 4.2), sharey="row", sharex="col", layout="constrained")
+    for column, (minutes, name) in enumerate([("0.5", "half a minute"), ("1", "one minute"), ("5", "five minutes")]):
+        seeds = sorted({r["seed"] for r in rows if r["minutes"] == minutes})
+        for row, key in enumerate(["fixed_percent", "lap_s"]):
+            by_steps = collections.defaultdict(list)
+            for seed in seeds:
+                of = [r for r in rows if (r["minutes"], r["seed"]) == (minutes, seed) and r[key]]
+                million, value = ([float(r[k]) for r in of] for k in ("steps_million", key))
+                axes[row, column].plot(million, value, color="tab:blue", alpha=0.35, linewidth=1)
+                for at, v in zip(million, value):
+                    by_steps[at].append(v)
+            middle = {at: statistics.median(of) for at, of in by_steps.items() if 2 * len(of) > len(seeds)}
+            axes[row, column].plot(middle.keys(), middle.values(), color="black", linewidth=1.6)
+            axes[row, column].grid(alpha=0.3)
+        axes[0, column].set(title=f"{name}, {len(seeds)} seeds", ylim=(0, 102))
+        axes[1, column].set(xlabel="million steps", ylim=(7, 10))
+    axes[0, 0].set_ylabel("laps from the pad, %")
+    axes[1, 0].set_ylabel("lap time, s")
+    save(figure, "learning.svg")
 
 
 def first_named(row):
@@ -65,3 +90,4 @@ def confusion():
 if __name__ == "__main__":
     soak()
     confusion()
+    learning()

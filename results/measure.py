@@ -136,6 +136,25 @@ def training(racer, only, threads):
             subprocess.run([*command, *(["--threads", threads] if threads else [])], cwd=ROOT, check=True)
             with path.open("a", newline="") as file:
                 csv.writer(file, lineterminator="\n").writerow(trained(minutes, seed, run))
+    learning()
+
+
+def learning():
+    """The snapshots of every training at hand; rows of others stay."""
+    path = HERE / "learning.csv"
+    rows = {(r["minutes"], r["seed"], r["steps_million"]): list(r.values()) for r in
+            (csv.DictReader(path.open()) if path.exists() else [])}
+    for minutes, (_, seeds) in TRAININGS.items():
+        for seed in map(str, range(1, seeds + 1)):
+            of = RUNS / f"minutes{minutes}-{seed}/snapshots.json"
+            for taken in json.loads(of.read_text()) if of.exists() else []:
+                lap, million = taken["fixed"]["lap_time_s"], f"{taken['steps'] / 1e6:.1f}"
+                percents = [percent(taken[start]["lap_completion"]) for start in ["fixed", "random"]]
+                rows[minutes, seed, million] = [minutes, seed, million, *percents, f"{lap['median']:.2f}" if lap else ""]
+    with path.open("w", newline="") as file:
+        file.write("minutes,seed,steps_million,fixed_percent,random_percent,lap_s\n")
+        ordered = sorted(rows, key=lambda key: [float(part) for part in key])
+        csv.writer(file, lineterminator="\n").writerows(rows[key] for key in ordered)
 
 
 def tried(racer, only, threads):
@@ -193,7 +212,7 @@ def main():
         print(f"$ {command}", flush=True)
         subprocess.run(shlex.split(command), cwd=ROOT, check=True)
     if not options.names:
-        print("training     3 h, each row at once  results/training.csv")
+        print("training     3 h, each row at once  results/training.csv, learning.csv")
         print("tried        6 h, each row at once  results/tried.csv")
         for name, (needs, time, command) in COMMANDS.items():
             print(f"{name:<12} {time:<8} {'needs ' + ', '.join(needs) if needs else '':<18} {command}")
