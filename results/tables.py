@@ -182,7 +182,7 @@ def other_truth():
     for r in rows("other-truth"):
         if r["seed"] in ("21", "22", "24", "25", "26", "27"):
             builds.setdefault((r["seed"], r["build"]), []).append(r)
-    share = lambda of, said: wilson(sum(map(said, of)), len(of)).replace(" %)", ")") if of else "-"
+    share = lambda of, said: wilson(sum(map(said, of)), len(of)).replace(" %)", ")").replace(" of ", "/") if of else "-"
     right = lambda r: r["first_right"] == "1"
     body = []
     for (seed, build), of in builds.items():
@@ -192,8 +192,8 @@ def other_truth():
         spurious = lambda r: r["spurious"] != ""
         body.append((f"{seed}, {build}", share(of, spurious), share(clean, spurious), share(hidden, right), share(told, right),
                      share(of, lambda r: r["unexplained"] == "1")))
-    head = ["seed, build", "nothing behind a name", "clean: false", "one or two: right first"]
-    return table([*head, "of those that could show", "unexplained (95 %)"], body)
+    head = ["seed, build", "nothing behind a name", "clean: false", "one or two: first"]
+    return table([*head, "those that could show", "unexplained (95 %)"], body)
 
 
 def retraining():
