@@ -392,6 +392,15 @@ fn forces_follow_the_equations() {
         }
     }
 
+    // Forms: drag that grows more, or less, than the speed, and never pushes; lift of one direction.
+    for (id, k, z) in [
+        ("vertical_drag", [0.2, 0.04], -(0.2 - 0.04) * vz),
+        ("vertical_drag", [0.02, 0.04], 0.0),
+        ("translational_lift", [0.01, 0.004], 0.014 * vx * vx + 0.006 * vy * vy),
+    ] {
+        close(felt(&one(id, &k), s)[2] - base[2], z, 1e-9, id);
+    }
+
     // Half way between full and empty nothing is compensated, elsewhere all or half of it.
     for (share, heard) in [(1.0, 23.0), (0.5, 22.75)] {
         let s = State { voltage: 22.5, ..s };

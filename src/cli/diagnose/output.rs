@@ -7,8 +7,9 @@ use crate::base::fsio::{self, Reserved};
 use crate::cli::tell;
 use crate::insight::diagnose::Diagnosed;
 use crate::insight::diagnose::against::Changes;
-use crate::insight::diagnose::finding::Diagnosis;
+use crate::insight::diagnose::finding::{Diagnosis, Status};
 use crate::insight::plan::NextFlight;
+use crate::model::effects::Role;
 use crate::present::report;
 use crate::present::report::diagnosis::DiagnosisFigures;
 use serde::Serialize;
@@ -53,6 +54,10 @@ impl<'a> OutputFiles<'a> {
             let vehicle = super::extended(diagnosed, "--extend")?;
             let written = file.write(encode::toml("the vehicle", vehicle)?.as_bytes())?;
             tell(&format!("extended vehicle in {0}: racer train --vehicle {0}", written.display()));
+            let named = diagnosed.diagnosis.findings.iter().filter(|f| f.status != Status::Suspected);
+            if named.into_iter().any(|f| f.has(Role::UniformWind)) {
+                tell("the wind is that day's, and not in it: `racer extend` adds one to train for");
+            }
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use super::numbers::{BEGIN, span};
 use super::problem::Problem;
 use super::select::Selection;
 use crate::base::check::Check;
-use crate::model::effects::{self, EffectKind, MODEL};
+use crate::model::effects::{self, EffectKind, MODEL, Role};
 use crate::model::vehicle::Vehicle;
 use crate::model::vehicle::extension::Extension;
 use std::collections::BTreeMap;
@@ -28,7 +28,8 @@ pub fn at_rest(problem: &Problem, selection: &Selection) -> Vehicle {
 }
 
 /// The base vehicle with every named effect of the simulator. Effects of sensors and of chance are no part of a
-/// vehicle; what a change of the compact model's numbers already holds is not added a second time.
+/// vehicle, nor is the wind, which is the day's; what a change of the compact model's numbers already holds is not
+/// added a second time.
 ///
 /// # Errors
 ///
@@ -38,7 +39,8 @@ pub fn vehicle(fitted: &FittedSelection, findings: &[Finding]) -> Result<Vehicle
     let mut vehicle = at_rest(fitted.problem, fitted.selection);
     let mut sizes: BTreeMap<String, BTreeMap<String, f64>> = vehicle.effects.sizes.clone();
     let mut uncertain: Vec<(String, usize)> = Vec::new();
-    for finding in findings.iter().filter(|f| f.status != Status::Suspected) {
+    let of_day = |f: &Finding| f.has(Role::UniformWind);
+    for finding in findings.iter().filter(|f| f.status != Status::Suspected && !of_day(f)) {
         let Some(card) = MODEL.iter().find(|card| card.id == finding.effect) else { continue };
         let Some(added) = fitted.selection.added.iter().find(|a| a.card.id == card.id) else { continue };
         for (p, k) in added.card.parameters.iter().zip(span(card)) {

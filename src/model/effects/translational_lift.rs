@@ -1,4 +1,5 @@
-//! Thrust gained from fresh wind: f_T += k v_h^2 (momentum theory).
+//! Thrust gained from fresh wind: f_T += k v_h^2 (momentum theory), and by how much more forward than sideways:
+//! f_T += forward (v_x^2 - v_y^2).
 
 use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
@@ -11,7 +12,10 @@ impl Effect for TranslationalLift {
         name: "translational lift",
         sentence: "in fast level flight the vehicle carries itself on less throttle",
         kind: EffectKind::Thrust,
-        parameters: &[EffectParameter { name: "k", unit: "1/m", low: 0.0, high: 0.08, typical: [0.003, 0.03] }],
+        parameters: &[
+            EffectParameter { name: "k", unit: "1/m", low: 0.0, high: 0.08, typical: [0.003, 0.03] },
+            EffectParameter { name: "forward", unit: "1/m", low: -0.08, high: 0.08, typical: [0.003, 0.03] },
+        ],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
@@ -24,6 +28,8 @@ impl Effect for TranslationalLift {
     #[inline(always)]
     fn aerodynamic_forces<R: Real>(k: &[R], forces: &mut AerodynamicForces<R>) {
         let [x, y, _] = forces.velocity;
-        forces.specific_thrust = k[0].mul_add(x.mul_add(x, y * y), forces.specific_thrust);
+        let [forward, sideways] = [x * x, y * y];
+        let lift = k[0].mul_add(forward + sideways, k[1] * (forward - sideways));
+        forces.specific_thrust = forces.specific_thrust + lift;
     }
 }

@@ -1,7 +1,11 @@
-//! Drag along the thrust in proportion to the speed: f_z -= k v_z.
+//! Drag along the thrust: f_z -= (k + square (|v_z| - 5 m/s)) v_z, never less than none. At `square` = 0 it goes with the
+//! speed, at `square` = k / (5 m/s) with its square, as a flat plate's, and below 0 it grows less than the speed.
 
 use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
+
+/// The vertical speed at which `k` is all of the drag, m/s: between a climb and a dive.
+const AT: f64 = 5.0;
 
 pub struct VerticalDrag;
 
@@ -11,7 +15,10 @@ impl Effect for VerticalDrag {
         name: "vertical drag",
         sentence: "climbs and descents are braked, whatever the throttle",
         kind: EffectKind::Drag,
-        parameters: &[EffectParameter { name: "k", unit: "1/s", low: 0.0, high: 0.9, typical: [0.05, 0.3] }],
+        parameters: &[
+            EffectParameter { name: "k", unit: "1/s", low: 0.0, high: 0.9, typical: [0.05, 0.3] },
+            EffectParameter { name: "square", unit: "1/m", low: -0.1, high: 0.2, typical: [0.01, 0.06] },
+        ],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
@@ -23,6 +30,8 @@ impl Effect for VerticalDrag {
 
     #[inline(always)]
     fn aerodynamic_forces<R: Real>(k: &[R], forces: &mut AerodynamicForces<R>) {
-        forces.force[2] = forces.force[2] - k[0] * forces.velocity[2];
+        let z = forces.velocity[2];
+        let slope = k[1].mul_add(z.abs() - R::of(AT), k[0]).max(R::zero());
+        forces.force[2] = forces.force[2] - slope * z;
     }
 }

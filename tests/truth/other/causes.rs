@@ -38,8 +38,8 @@ pub const KINDS: &[Kind] = &[
     // Thrust lost in climbs: with the root of the thrust, 1/s; by momentum theory, share of the induced velocity.
     kind("inflow_root", &["axial_inflow"], 0.3, 1.2),
     kind("inflow_momentum", &["axial_inflow", "translational_lift"], 0.25, 0.7),
-    // Vertical drag of a plate (1/m), and one that saturates (1/s).
-    kind("plate_drag", &["vertical_drag"], 0.02, 0.06),
+    // Vertical drag of a plate above, in climbs alone (1/m), and one that saturates (1/s).
+    kind("climb_drag", &["vertical_drag"], 0.02, 0.06),
     kind("soft_drag", &["vertical_drag"], 0.1, 0.4),
     // Forwards only (1/m): with the square, and with the whole speed.
     kind("nose_drag", &["drag_asymmetry"], 0.004, 0.015),
@@ -47,9 +47,9 @@ pub const KINDS: &[Kind] = &[
     // Drag of each axis by itself, as a share: of the flat plane and the vertical alone, and the faster the more.
     kind("axis_round", &["axis_drag"], 0.4, 1.0),
     kind("axis_fast", &["axis_drag"], 0.6, 1.4),
-    // Lift (1/m, m^-1/2): of a fuselage along x alone, and with a lower power of the speed.
+    // Lift (1/m, m^-1/2): of a fuselage along x alone, of a nose forwards alone, and with a lower power of the speed.
     kind("plate_lift", &["body_lift"], 0.006, 0.03),
-    kind("wing_lift", &["translational_lift"], 0.006, 0.03),
+    kind("nose_lift", &["translational_lift"], 0.006, 0.03),
     kind("advance_lift", &["translational_lift"], 0.02, 0.1),
     // Cheeseman and Bennett with the radius of the whole vehicle, m; exponential, share.
     kind("ground_cheeseman", &["ground_effect"], 0.25, 0.5),
