@@ -8,7 +8,9 @@ use super::problem::Problem;
 use super::record::BIN_S;
 use super::select::Selection;
 use crate::base::stats::{NORMAL_95, mean, median};
-use crate::insight::criteria::chance::{ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_S, GUST_STRUCTURE};
+use crate::insight::criteria::chance::{
+    ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_MOST_S, GUST_MEMORY_S, GUST_STRUCTURE,
+};
 use crate::insight::criteria::flown::GUST_ROWS;
 use crate::insight::criteria::material::MATERIAL_GUST;
 use crate::insight::criteria::replicated::AGREEING_STRETCHES;
@@ -45,13 +47,17 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
     let half_tau = NORMAL_95 * tau * tau / apart_s() * relative;
     let value = |v: f64, h: f64, unit: &str| Value { value: v, low: v - h, high: v + h, unit: unit.into() };
     let sizes = card.parameters.iter().zip([(sigma, half), (tau, half_tau)]);
-    Some(Finding {
+    let mut found = Finding {
         channel: "specific force x",
         parameters: sizes.map(|(p, (v, h))| (p.name.to_string(), value(v, h, p.unit))).collect(),
         stretches: common.stretches(),
         impact: sigma * (2.0 * tau.min(1.0) * 1.0).sqrt(),
         ..Finding::of(card)
-    })
+    };
+    if tau > GUST_MEMORY_MOST_S.get() {
+        found.suspect("it lasts for seconds: a wind that turns, or grows with height, does that as well".into());
+    }
+    Some(found)
 }
 
 /// What errors of the logged velocity look like in the forces, m/s2: how much of it the pushes show, which the air has
