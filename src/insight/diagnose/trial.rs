@@ -8,7 +8,7 @@ use super::problem::Problem;
 use super::size::is_bounded;
 use super::whiten::Whitener;
 use crate::insight::criteria::evident::{
-    BOUNDED_MERIT, EVIDENCE_WORTH_A_FIT, GAIN_WORTH_A_FIT, LEAST_GAIN, RARE_GAIN, SHORT_LIST,
+    BOUNDED_MERIT, EVIDENCE_WORTH_A_FIT, FORM_GAIN, GAIN_WORTH_A_FIT, LEAST_GAIN, RARE_GAIN, SHORT_LIST,
 };
 use crate::insight::criteria::rival::TIE_DEVIATIONS;
 use crate::model::effects::{Card, EffectKind, are_rivals};
@@ -138,7 +138,8 @@ impl Trials<'_> {
 
     /// The effect fitted from that of `starts` that does best after a few steps.
     fn fitted(&self, card: &Card, starts: &[Vec<f64>]) -> FitPoint {
-        let own: Vec<usize> = span(card).collect();
+        let form = card.form.map(|i| span(card).start + i);
+        let own: Vec<usize> = span(card).filter(|k| Some(*k) != form).collect();
         let glance = |x: &Vec<f64>| fit::refit_in(GLANCE, self.problem, self.whitener, self.point, &own, x);
         let first = match starts {
             [only] => only.clone(),
@@ -147,7 +148,13 @@ impl Trials<'_> {
                 all.min_by(|a, b| a.total().total_cmp(&b.total())).map_or(self.point.x.clone(), |at| at.x)
             }
         };
-        fit::refit(self.problem, self.whitener, self.point, &own, &first)
+        let plain = fit::refit(self.problem, self.whitener, self.point, &own, &first);
+        if form.is_none() {
+            return plain;
+        }
+        let all: Vec<usize> = span(card).collect();
+        let formed = fit::refit(self.problem, self.whitener, self.point, &all, &plain.x);
+        if plain.total() - formed.total() > FORM_GAIN.get() { formed } else { plain }
     }
 
     /// The point's numbers, with the time constants that a delay is mistaken for shorter by it: a lag that was fitted

@@ -19,6 +19,7 @@ impl Effect for VerticalDrag {
             EffectParameter { name: "k", unit: "1/s", low: 0.0, high: 0.9, typical: [0.05, 0.3] },
             EffectParameter { name: "square", unit: "1/m", low: -0.1, high: 0.2, typical: [0.01, 0.06] },
         ],
+        form: Some(1),
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
