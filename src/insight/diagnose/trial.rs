@@ -154,7 +154,8 @@ impl Trials<'_> {
         }
         let all: Vec<usize> = span(card).collect();
         let formed = fit::refit(self.problem, self.whitener, self.point, &all, &plain.x);
-        if plain.total() - formed.total() > FORM_GAIN.get() { formed } else { plain }
+        let [size, form] = [self.point.total() - plain.total(), plain.total() - formed.total()];
+        if form > LEAST_GAIN.get() && form > FORM_GAIN.get() * size { formed } else { plain }
     }
 
     /// The point's numbers, with the time constants that a delay is mistaken for shorter by it: a lag that was fitted
