@@ -16,7 +16,7 @@ pub struct Card {
     pub parameters: &'static [EffectParameter],
     /// Which parameter is no size but a form, such as a time constant: it means nothing where the size is 0.
     pub shape: Option<usize>,
-    /// Which parameter is fitted only where flights show it beside the others, such as how the size goes with the speed.
+    /// Which parameter is fitted only where flights show it beside the size, such as how that goes with the speed.
     pub form: Option<usize>,
     /// Identifiers of the effects that it is the whole of, each at its own size.
     pub parts: &'static [&'static str],

@@ -1,5 +1,5 @@
-//! Drag along the thrust: f_z -= (k + square (|v_z| - 5 m/s)) v_z, never less than none. At `square` = 0 it goes with the
-//! speed, at `square` = k / (5 m/s) with its square, as a flat plate's, and below 0 it grows less than the speed.
+//! Drag along the thrust: f_z -= (k + square (|v_z| - 5 m/s)) v_z, never less than none. At `square` = 0 it goes with
+//! the speed, at `square` = k / (5 m/s) with its square, as a plate's, and below 0 it grows less than the speed.
 
 use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
