@@ -91,6 +91,18 @@ fn inflow_and_rotor_drag_are_found() {
 }
 
 #[test]
+fn drag_by_the_speed_alone_has_no_form() {
+    let vehicle = Vehicle::draw(47);
+    let mut rng = StdRng::seed_from_u64(47);
+    let hidden = [Hidden::sized("vertical_drag", 0.2, &vehicle, &mut rng)];
+    let Diagnosed { diagnosis, .. } = diagnosed(&vehicle, &hidden, 47);
+    let found = named(&diagnosis);
+    assert_eq!(found.iter().map(|f| f.effect).collect::<Vec<_>>(), ["vertical_drag"]);
+    assert_eq!(found[0].parameters.keys().collect::<Vec<_>>(), ["k"]);
+    assert!((found[0].parameters["k"].value - 0.2).abs() < 0.01);
+}
+
+#[test]
 fn a_lever_arm_corrects_the_log_and_is_no_dynamics() {
     let vehicle = Vehicle::draw(45);
     let mut rng = StdRng::seed_from_u64(45);

@@ -118,6 +118,25 @@ fn a_few_stretches_do_not_move_what_all_others_know() {
     assert_eq!(extended.time_constant_s.pitch, vehicle.in_racer().time_constant_s.pitch);
 }
 
+/// Rule 4: what a wind that turns leaves beside a steady one lasts for seconds, and is no gust; and the wind is the
+/// day's, so that the vehicle does without it.
+#[test]
+fn a_wind_that_turns_is_no_gust() {
+    let (vehicle, log) = other([28, 5], 0.94485, 250.0, ("wind_veer", 2.5985));
+    let Diagnosed { diagnosis, vehicle: extended, .. } = diagnosed(&vehicle, &log);
+    let names = names(&diagnosis);
+    assert!(names.contains(&"steady_wind") && !names.contains(&"gusts"), "{names:?}");
+    assert!(!extended.unwrap().effects.sizes.contains_key("steady_wind"));
+}
+
+/// Rule 1: lift that forward flight has and sideways flight has not is a form of the one cause.
+#[test]
+fn lift_in_forward_flight_is_a_form_of_lift() {
+    let diagnosis = said_of([28, 26], 0.60504, 1000.0, ("nose_lift", 0.0138));
+    let lift = diagnosis.findings.iter().find(|f| f.effect == "translational_lift").expect("named");
+    assert!(lift.status != Status::Suspected && lift.parameters["forward"].low > 0.0, "{lift:?}");
+}
+
 /// Rule 10: a rate loop that answers late, and later as the battery empties, is no clock that runs fast, which would
 /// shift the thrust as well.
 #[test]

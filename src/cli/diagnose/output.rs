@@ -7,7 +7,7 @@ use crate::base::fsio::{self, Reserved};
 use crate::cli::tell;
 use crate::insight::diagnose::Diagnosed;
 use crate::insight::diagnose::against::Changes;
-use crate::insight::diagnose::finding::{Diagnosis, Status};
+use crate::insight::diagnose::finding::{Diagnosis, Finding, Status};
 use crate::insight::plan::NextFlight;
 use crate::model::effects::Role;
 use crate::present::report;
@@ -54,8 +54,8 @@ impl<'a> OutputFiles<'a> {
             let vehicle = super::extended(diagnosed, "--extend")?;
             let written = file.write(encode::toml("the vehicle", vehicle)?.as_bytes())?;
             tell(&format!("extended vehicle in {0}: racer train --vehicle {0}", written.display()));
-            let named = diagnosed.diagnosis.findings.iter().filter(|f| f.status != Status::Suspected);
-            if named.into_iter().any(|f| f.has(Role::UniformWind)) {
+            let is_wind = |f: &Finding| f.has(Role::UniformWind) && f.status != Status::Suspected;
+            if diagnosed.diagnosis.findings.iter().any(is_wind) {
                 tell("the wind is that day's, and not in it: `racer extend` adds one to train for");
             }
         }

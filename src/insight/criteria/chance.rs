@@ -32,7 +32,7 @@ criteria! {
     GUST_BALANCED = 0.15, Assumed(UNRECORDED);
     /// Memory of gusts, s.
     GUST_MEMORY_S = 0.05, Theory("an eddy of a metre at 20 m/s passes in it");
-    /// Memory from which it is rather a wind that turns or grows with height, s.
+    /// Memory from which gusts beside a wind are rather that wind, which turns or grows with height, s.
     GUST_MEMORY_MOST_S = 2.0, Assumed("three times that of stirred air in the third truth, half that of winds there");
     /// Gusts are so many times what the errors of the logged velocity look like in the forces.
     ESTIMATOR_RATIO = 2.0, Assumed("how the drag changes with the speed is known to a factor of two");

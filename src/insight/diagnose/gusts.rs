@@ -47,17 +47,18 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
     let half_tau = NORMAL_95 * tau * tau / apart_s() * relative;
     let value = |v: f64, h: f64, unit: &str| Value { value: v, low: v - h, high: v + h, unit: unit.into() };
     let sizes = card.parameters.iter().zip([(sigma, half), (tau, half_tau)]);
-    let mut found = Finding {
+    Some(Finding {
         channel: "specific force x",
         parameters: sizes.map(|(p, (v, h))| (p.name.to_string(), value(v, h, p.unit))).collect(),
         stretches: common.stretches(),
         impact: sigma * (2.0 * tau.min(1.0) * 1.0).sqrt(),
         ..Finding::of(card)
-    };
-    if tau > GUST_MEMORY_MOST_S.get() {
-        found.suspect("it lasts for seconds: a wind that turns, or grows with height, does that as well".into());
-    }
-    Some(found)
+    })
+}
+
+/// Whether these gusts last for so long that a wind which turns, or grows with height, leaves the same.
+pub fn last_like_wind(gusts: &Finding) -> bool {
+    gusts.has(Role::RandomForce) && gusts.parameters.get("tau").is_some_and(|tau| tau.value > GUST_MEMORY_MOST_S.get())
 }
 
 /// What errors of the logged velocity look like in the forces, m/s2: how much of it the pushes show, which the air has

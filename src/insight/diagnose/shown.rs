@@ -25,7 +25,8 @@ pub fn parameters(fitted: &FittedSelection, card: &Card) -> BTreeMap<String, Val
     let here = shown(&values, tau);
     // By how much each shown value changes with the fitted ones (delta method).
     let mut out = BTreeMap::new();
-    for (i, (name, value, unit)) in here.iter().enumerate() {
+    let fitted_too = |i: usize| card.form != Some(i) || places.len() == card.parameters.len();
+    for (i, (name, value, unit)) in here.iter().enumerate().filter(|(i, _)| fitted_too(*i)) {
         let mut slopes: Vec<(usize, f64)> = Vec::new();
         for (j, &place) in places.iter().enumerate() {
             let step = 1e-4 * card.parameters[j].typical[0];
