@@ -180,7 +180,7 @@ def other_truth():
     """The third truth's logs of 100 s, by seed and build."""
     builds = {}
     for r in rows("other-truth"):
-        if r["seed"] in ("21", "22", "24", "25", "26", "27", "28"):
+        if r["seed"] in ("21", "22", "24", "25", "26", "27", "28", "29"):
             builds.setdefault((r["seed"], r["build"]), []).append(r)
     share = lambda of, said: wilson(sum(map(said, of)), len(of)).replace(" %)", ")").replace(" of ", "/") if of else "-"
     right = lambda r: r["first_right"] == "1"
@@ -222,7 +222,7 @@ def soak():
 
 def other_groups():
     """The most logs of one build of the third truth, by what is hidden."""
-    of = rows("other-truth", seed="27")
+    of = rows("other-truth", seed="29")
     is_in = lambda *groups: [r for r in of if r["group"] in groups]
     share = lambda which, said: wilson(sum(map(said, which)), len(which)) if which else "-"
     right = lambda r: r["first_right"] == "1"
@@ -244,7 +244,7 @@ def other_groups():
 
 def other_extended():
     """Their extended vehicles: trained for a moment, and held against another flight."""
-    of = rows("other-truth", seed="27")
+    of = rows("other-truth", seed="29")
     written = [r for r in of if r["extended"] == "1"]
     why = {}
     for r in of:
