@@ -132,6 +132,8 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
     let fitted = FittedSelection::new(&problem, &selection);
     let Judgement { mut findings, judged, drift, unexplained, small } = findings::find(&fitted, lost, &structure);
+    let driven: Vec<motors::Driven> = problem.records.iter().flat_map(|r| r.driven.clone()).collect();
+    one_motor::doubt_moves(&driven, &mut findings);
     doubt::all(&fitted, &mut findings);
     findings.extend(aside);
     watch("measuring the gain", 0.9);
@@ -139,7 +141,6 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let kept = &kept;
     let fitted_kept = FittedSelection::new(&problem, kept);
     keep::as_written(&fitted_kept, &mut findings);
-    let driven: Vec<motors::Driven> = problem.records.iter().flat_map(|r| r.driven.clone()).collect();
     one_motor::name(&driven, &mut findings);
     let held = gain::measure(&problem, &selection, kept);
     gains(&problem, &held, &judged, &mut findings);

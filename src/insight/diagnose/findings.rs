@@ -67,10 +67,6 @@ impl Judgement {
             open(finding, &all, &self.unexplained);
         }
         self.findings.iter_mut().for_each(or_parts);
-        let motor = self.findings.iter().any(|f| f.has(Role::OneMotor) && f.status != Status::Suspected);
-        for finding in self.findings.iter_mut().filter(|f| motor && f.explained.contains_key(MOVES)) {
-            finding.suspect("one motor gives less, and thrust falls by that as well".into());
-        }
         for left in structure.iter().filter(|s| adequacy::remembers(s)) {
             family(&mut self.findings, left.channel);
         }

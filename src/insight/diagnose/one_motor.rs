@@ -1,5 +1,6 @@
 //! The finding of a motor that gives less than the others.
 
+use super::cause::MOVES;
 use super::finding::{Finding, Status, Value};
 use super::motors::{Driven, FOUR, Weak, weak};
 use crate::model::constants::GRAVITY_M_S2;
@@ -9,6 +10,15 @@ use std::collections::BTreeMap;
 /// The effect that a weak motor is.
 pub fn card() -> Option<&'static Card> {
     effects::acting(Role::OneMotor).next()
+}
+
+/// Where one motor gives less, by its name or by how the motors were driven, no other cause of a move of thrust is sure.
+pub fn doubt_moves(driven: &[Driven], findings: &mut [Finding]) {
+    let named = findings.iter().any(|f| f.has(Role::OneMotor) && f.status != Status::Suspected);
+    let weak = named || weak(driven, [1.0; FOUR]).is_some();
+    for finding in findings.iter_mut().filter(|f| weak && f.explained.contains_key(MOVES)) {
+        finding.suspect("one motor gives less, and thrust falls by that as well".into());
+    }
 }
 
 /// Names the weak motor of flights that were driven like this, in the place of what the rates say of one.
@@ -41,4 +51,24 @@ pub fn sizes(weak: &Weak) -> BTreeMap<String, Value> {
     let Weak { loss, half, .. } = *weak;
     let lost = Value { value: loss, low: loss - half, high: loss + half, unit: "of its thrust".into() };
     BTreeMap::from([("lost".into(), lost), ("motor".into(), which)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn beside_a_weak_motor_no_other_cause_of_a_move_of_thrust_is_sure() {
+        let status = |harder: f64| {
+            let driven: Vec<Driven> = (0..40).map(|i| [harder, 0.99, 1.0 + 0.002 * (i % 5) as f64, 1.01]).collect();
+            let moves = effects::cards().find(|c| c.role != Role::OneMotor).expect("an effect");
+            let said = Finding { status: Status::Named, explained: [(MOVES, 0.9)].into(), ..Finding::of(moves) };
+            let other = Finding { status: Status::Named, ..Finding::of(moves) };
+            let mut findings = [said, other];
+            doubt_moves(&driven, &mut findings);
+            findings.map(|f| f.status)
+        };
+        assert_eq!(status(1.2), [Status::Suspected, Status::Named]);
+        assert_eq!(status(1.0), [Status::Named, Status::Named]);
+    }
 }
