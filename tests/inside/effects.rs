@@ -488,7 +488,7 @@ fn sensors_read_as_their_equations_say() {
     assert_eq!(read("imu_misalignment", &[0.1, 0.0, 0.0]), ([1.0, 2.0 - 0.1 * 3.0, 3.0 + 0.2], [0.0, -1.0, 10.0]));
     assert_eq!(read("accel_scale", &[0.5]).1, [0.0, 0.0, 15.0]);
     assert_eq!(read("accel_bias", &[0.5, 0.25, 1.0]).1, [0.5, 0.25, 11.0]);
-    assert_eq!(read("gyro_scale", &[0.5]).0, [1.5, 3.0, 4.5]);
+    assert_eq!(read("gyro_scale", &[0.5, 0.1, -0.5]).0, [1.5, 2.2, 1.5]);
     assert_eq!(read("gyro_bias", &[0.5, 0.25, 1.0]).0, [1.5, 2.25, 4.0]);
     assert_eq!(read("vibration_rectification", &[4.0, 8.0, 12.0]).1, [1.0, 2.0, 13.0]);
 }
