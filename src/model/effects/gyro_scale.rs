@@ -12,7 +12,7 @@ impl Effect for GyroScale {
     const CARD: Card = Card {
         id: "gyro_scale",
         name: "gyro scale",
-        sentence: "the gyro tells more or less than the vehicle turns, by the same share",
+        sentence: "the gyro tells more or less than the vehicle turns, by a share of it on each axis",
         kind: EffectKind::Sensor,
         parameters: &[share("x"), share("y"), share("z")],
         writes: &[Quantity::Gyro, Quantity::Integrated],
