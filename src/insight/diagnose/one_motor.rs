@@ -12,7 +12,7 @@ pub fn card() -> Option<&'static Card> {
     effects::acting(Role::OneMotor).next()
 }
 
-/// Where one motor gives less, by its name or by how the motors were driven, no other cause of a move of thrust is sure.
+/// Where one motor gives less, by its name or by how the motors were driven, no other cause of moved thrust is sure.
 pub fn doubt_moves(driven: &[Driven], findings: &mut [Finding]) {
     let named = findings.iter().any(|f| f.has(Role::OneMotor) && f.status != Status::Suspected);
     let weak = named || weak(driven, [1.0; FOUR]).is_some();
