@@ -65,9 +65,11 @@ pub mod shown;
 pub mod signals;
 pub mod size;
 pub mod skew;
+pub mod steady_air;
 pub mod structure;
 pub mod told;
 pub mod trial;
+mod unpaid_forms;
 pub mod unseen;
 pub mod whiten;
 pub mod whole;
@@ -120,7 +122,8 @@ pub fn problem(logs: Vec<Quality>, vehicle: &Vehicle) -> Problem {
 /// Diagnoses flights of a vehicle that is thought to be `vehicle`.
 pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnosed {
     watch("predicting", 0.02);
-    let (problem, mut selection, left_out) = accident::select_steady(logs, |logs| problem(logs, vehicle), watch);
+    let (problem, selection, left_out) = accident::select_steady(logs, |logs| problem(logs, vehicle), watch);
+    let mut selection = unpaid_forms::given_up(&problem, selection);
     let usable_s = problem.records.iter().map(|r| r.usable_s).sum();
     ordinary::first(&problem, &mut selection);
     whole::parts(&problem, &mut selection);

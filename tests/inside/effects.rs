@@ -392,13 +392,15 @@ fn forces_follow_the_equations() {
         }
     }
 
-    // Forms: drag that grows more, or less, than the speed, and never pushes; lift of one direction.
+    // Forms: drag that grows more, or less, than the speed, and never pushes, or not one way; lift of one direction.
     for (id, k, z) in [
-        ("vertical_drag", [0.2, 0.04], -(0.2 - 0.04) * vz),
-        ("vertical_drag", [0.02, 0.04], 0.0),
-        ("translational_lift", [0.01, 0.004], 0.014 * vx * vx + 0.006 * vy * vy),
+        ("vertical_drag", &[0.2, 0.04, 0.0][..], -(0.2 - 0.04) * vz),
+        ("vertical_drag", &[0.02, 0.04, 0.0], 0.0),
+        ("vertical_drag", &[0.2, 0.04, 0.5], -(0.2 - 0.04) * (vz + 0.5 * vz.abs())),
+        ("vertical_drag", &[0.2, 0.04, -vz.signum()], 0.0),
+        ("translational_lift", &[0.01, 0.004], 0.014 * vx * vx + 0.006 * vy * vy),
     ] {
-        close(felt(&one(id, &k), s)[2] - base[2], z, 1e-9, id);
+        close(felt(&one(id, k), s)[2] - base[2], z, 1e-9, id);
     }
 
     // Half way between full and empty nothing is compensated, elsewhere all or half of it.
@@ -486,7 +488,7 @@ fn sensors_read_as_their_equations_say() {
     // r x f of r = x and f = z is -y.
     assert_eq!(read("accel_misalignment", &[0.1, 0.0, 0.0]), ([1.0, 2.0, 3.0], [0.0, -1.0, 10.0]));
     assert_eq!(read("imu_misalignment", &[0.1, 0.0, 0.0]), ([1.0, 2.0 - 0.1 * 3.0, 3.0 + 0.2], [0.0, -1.0, 10.0]));
-    assert_eq!(read("accel_scale", &[0.5]).1, [0.0, 0.0, 15.0]);
+    assert_eq!(read("accel_scale", &[0.1, 0.2, 0.5]).1, [0.0, 0.0, 15.0]);
     assert_eq!(read("accel_bias", &[0.5, 0.25, 1.0]).1, [0.5, 0.25, 11.0]);
     assert_eq!(read("gyro_scale", &[0.5, 0.1, -0.5]).0, [1.5, 2.2, 1.5]);
     assert_eq!(read("gyro_bias", &[0.5, 0.25, 1.0]).0, [1.5, 2.25, 4.0]);

@@ -19,7 +19,7 @@ criteria! {
     /// Fall of the whitened squares for which an effect of no size that matters is kept beside the causes.
     NUISANCE_GAIN = 400.0, Assumed(UNRECORDED);
     /// Share of what an effect gains that its form has to gain beside it.
-    FORM_GAIN = 0.3, Assumed("the form of what hardly shows is not told, and is extrapolated where a size is not");
+    FORM_GAIN = 0.2, Assumed("the form of what hardly shows is not told, and is extrapolated where a size is not");
     /// Candidates that are fitted in a round, besides rivals.
     SHORT_LIST = 6.0, Assumed("a fit is a hundred times as dear as a score");
     /// Effects that are added at most.

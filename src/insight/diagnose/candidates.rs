@@ -67,7 +67,7 @@ pub fn directions(card: &'static Card) -> Vec<Direction> {
             .collect();
     }
     if card.parameters.len() > 1 {
-        let each = numbers.iter().enumerate().filter(|(i, _)| card.form != Some(*i));
+        let each = numbers.iter().enumerate().filter(|(i, _)| !card.forms.contains(i));
         return each.map(|(i, &k)| Direction { card, start: vec![(k, sizes(i)[0])] }).collect();
     }
     let signs: &[f64] = if card.parameters[0].low < 0.0 { &[1.0, -1.0] } else { &[1.0] };

@@ -40,8 +40,9 @@ pub fn vehicle(fitted: &FittedSelection, findings: &[Finding]) -> Result<Vehicle
     let mut sizes: BTreeMap<String, BTreeMap<String, f64>> = vehicle.effects.sizes.clone();
     let mut uncertain: Vec<(String, usize)> = Vec::new();
     let of_day = |f: &Finding| f.has(Role::UniformWind);
-    for finding in findings.iter().filter(|f| f.status != Status::Suspected && !of_day(f)) {
-        let Some(card) = MODEL.iter().find(|card| card.id == finding.effect) else { continue };
+    let named = findings.iter().filter(|f| f.status != Status::Suspected && !of_day(f));
+    for card in named.flat_map(|f| f.cards().map(|(card, _)| card)) {
+        let Some(card) = MODEL.iter().find(|of_vehicle| of_vehicle.id == card.id) else { continue };
         let Some(added) = fitted.selection.added.iter().find(|a| a.card.id == card.id) else { continue };
         for (p, k) in added.card.parameters.iter().zip(span(card)) {
             sizes.entry(card.id.into()).or_default().insert(p.name.into(), point.x[k]);

@@ -71,6 +71,10 @@ pub struct Finding {
     pub status: Status,
     /// All that it may be, itself first; only itself where it is named.
     pub members: Vec<&'static str>,
+    /// Effects of its family that the vehicle has beside it: they come nearer to its form, and have no name of their
+    /// own. Their sizes stand among its parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub with: Vec<&'static str>,
     /// What it means, in a sentence.
     pub sentence: &'static str,
     /// The channel that it explains most of.
@@ -243,6 +247,7 @@ impl Finding {
             name: card.name,
             status: Status::Named,
             members: vec![card.id],
+            with: Vec::new(),
             sentence: card.sentence,
             channel: "",
             parameters: BTreeMap::new(),
@@ -269,10 +274,26 @@ impl Finding {
 
     /// It may as well be the effect `id`.
     pub fn or(&mut self, id: &'static str) {
-        self.members.push(id);
+        if !self.members.contains(&id) {
+            self.members.push(id);
+        }
         if self.status == Status::Named {
             self.status = Status::NamedSet;
         }
+    }
+
+    /// It may as well be the effect of `other`, which comes nearer to its form beside it.
+    pub fn with(&mut self, other: Finding) {
+        self.or(other.effect);
+        self.with.push(other.effect);
+        self.with.extend(other.with);
+    }
+
+    /// The effects that the vehicle has where it is named, with what their parameters are called in front.
+    pub fn cards(&self) -> impl Iterator<Item = (&'static Card, String)> {
+        let own = std::iter::once((self.effect, String::new()));
+        let all = own.chain(self.with.iter().map(|id| (*id, format!("{id}."))));
+        all.filter_map(|(id, prefix)| Some((effects::card(id)?, prefix)))
     }
 
     /// Shares of the channels that are worth a word, the largest first.

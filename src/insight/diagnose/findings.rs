@@ -59,10 +59,6 @@ impl Judgement {
         for finding in self.findings.iter_mut().filter(|f| placed && f.has(Role::UniformWind)) {
             finding.suspect("the wind is not the same everywhere".into());
         }
-        let windy = self.findings.iter().any(|f| f.has(Role::UniformWind) && f.status != Status::Suspected);
-        for finding in self.findings.iter_mut().filter(|f| windy && gusts::last_like_wind(f)) {
-            finding.suspect("beside a wind it lasts for seconds: the wind may turn, or grow with height".into());
-        }
         for finding in self.findings.iter_mut().filter(|f| f.status == Status::Named) {
             open(finding, &all, &self.unexplained);
         }
@@ -98,20 +94,20 @@ fn open(finding: &mut Finding, all: &[Finding], unexplained: &[Structure]) {
     }
 }
 
-/// Where `channel` still has a memory, of rivals that both explain some of it one has the name, and the other may
-/// make up for its form.
-fn family(findings: &mut [Finding], channel: &str) {
+/// Where `channel` still has a memory, of rivals that both explain some of it one has the name: its form is not right,
+/// and with the others it comes nearer.
+fn family(findings: &mut Vec<Finding>, channel: &str) {
     let share = |f: &Finding| f.explained.get(channel).copied().filter(|_| f.status != Status::Suspected);
-    let mut order: Vec<(usize, f64)> = findings.iter().enumerate().filter_map(|(i, f)| Some((i, share(f)?))).collect();
+    let mut order: Vec<(&'static str, f64)> = findings.iter().filter_map(|f| Some((f.effect, share(f)?))).collect();
     order.sort_by(|a, b| b.1.total_cmp(&a.1));
     for (at, &(larger, _)) in order.iter().enumerate() {
         for &(smaller, _) in &order[at + 1..] {
-            let [Some(a), Some(b)] = [larger, smaller].map(|i| effects::card(findings[i].effect)) else { continue };
-            let sure = [larger, smaller].iter().all(|&i| findings[i].status != Status::Suspected);
-            if sure && are_rivals(a, b) && a.writes == b.writes {
-                let why = format!("structure remains in {channel}: it may make up for the form of {}", a.name);
-                findings[smaller].suspect(why);
-                findings[larger].or(b.id);
+            let place = |id: &str| findings.iter().position(|f| f.effect == id);
+            let [Some(a), Some(b)] = [larger, smaller].map(effects::card) else { continue };
+            let (Some(_), Some(i)) = (place(larger), place(smaller)) else { continue };
+            if are_rivals(a, b) && a.writes == b.writes {
+                let other = findings.remove(i);
+                findings.iter_mut().filter(|f| f.effect == larger).for_each(|f| f.with(other.clone()));
             }
         }
     }
@@ -156,11 +152,12 @@ mod tests {
             let explained = [("specific force z", share)].into();
             Finding { status: Status::Named, members: vec![card.id], explained, ..Finding::of(card) }
         };
-        let mut findings = [said(a, 0.34), said(other, 0.3), said(b, 0.41)];
+        let mut findings = vec![said(a, 0.34), said(other, 0.3), said(b, 0.41)];
         family(&mut findings, "specific force x");
         assert!(findings.iter().all(|f| f.status == Status::Named), "nothing of theirs is there");
         family(&mut findings, "specific force z");
-        assert_eq!(findings.each_ref().map(|f| f.status), [Status::Suspected, Status::Named, Status::NamedSet]);
-        assert_eq!(findings[2].members, [b.id, a.id]);
+        assert_eq!(findings.iter().map(|f| f.effect).collect::<Vec<_>>(), [other.id, b.id]);
+        assert_eq!((findings[1].status, &findings[1].members[..]), (Status::NamedSet, &[b.id, a.id][..]));
+        assert_eq!(findings[1].cards().map(|(card, _)| card.id).collect::<Vec<_>>(), [b.id, a.id]);
     }
 }

@@ -7,9 +7,10 @@ use super::oscillation;
 use super::problem::Problem;
 use super::record::BIN_S;
 use super::select::Selection;
+use super::steady_air;
 use crate::base::stats::{NORMAL_95, mean, median};
 use crate::insight::criteria::chance::{
-    ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_MOST_S, GUST_MEMORY_S, GUST_STRUCTURE,
+    ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_S, GUST_ONE_WAY, GUST_STRUCTURE,
 };
 use crate::insight::criteria::flown::GUST_ROWS;
 use crate::insight::criteria::material::MATERIAL_GUST;
@@ -47,18 +48,17 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
     let half_tau = NORMAL_95 * tau * tau / apart_s() * relative;
     let value = |v: f64, h: f64, unit: &str| Value { value: v, low: v - h, high: v + h, unit: unit.into() };
     let sizes = card.parameters.iter().zip([(sigma, half), (tau, half_tau)]);
-    Some(Finding {
+    let mut found = Finding {
         channel: "specific force x",
         parameters: sizes.map(|(p, (v, h))| (p.name.to_string(), value(v, h, p.unit))).collect(),
         stretches: common.stretches(),
         impact: sigma * (2.0 * tau.min(1.0) * 1.0).sqrt(),
         ..Finding::of(card)
-    })
-}
-
-/// Whether these gusts last for so long that a wind which turns, or grows with height, leaves the same.
-pub fn last_like_wind(gusts: &Finding) -> bool {
-    gusts.has(Role::RandomForce) && gusts.parameters.get("tau").is_some_and(|tau| tau.value > GUST_MEMORY_MOST_S.get())
+    };
+    if steady_air::lasting(problem, selection) > GUST_ONE_WAY.get() {
+        found.suspect("it pushes one way for seconds: a wind that turns, or that is not the same everywhere".into());
+    }
+    Some(found)
 }
 
 /// What errors of the logged velocity look like in the forces, m/s2: how much of it the pushes show, which the air has

@@ -4,11 +4,12 @@ use super::cause::MOVES;
 use super::channels::LIFT;
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
+use super::numbers::DISCHARGE;
 use super::own_numbers::{like, own, unpaid};
 use super::problem::Problem;
 use super::replication::stretches;
 use super::select::Selection;
-use super::worse::{self, Worse};
+use super::worse::{self, Than, Worse};
 use super::{extend, shown};
 use crate::base::check::Check;
 use crate::model::effects::{self, Card, EffectKind, MODEL, Role};
@@ -17,8 +18,8 @@ use crate::model::effects::{self, Card, EffectKind, MODEL, Role};
 const OVER_ALL: f64 = 1e6;
 
 /// What of the selection is kept: what is only suspected is no part of the extended vehicle, nor what is not sure
-/// without that, nor what makes unseen flight worse where what is left does not. With the reason why it is worse where
-/// nothing helps: then every name stands as it did.
+/// without that, nor what makes unseen flight worse where what is left does not. With the reason why it is worse, even
+/// than the vehicle that was given, where nothing helps: then every name stands as it did.
 pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> (Selection, Option<String>) {
     let caused = with_cause(problem, selection, findings);
     let selection = caused.as_ref().unwrap_or(selection);
@@ -41,7 +42,7 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
         }
         // Before an effect is to blame, the vehicle's own numbers: flights need not tell them as well as the base does.
         let channel = kept.worse.as_ref().map_or(LIFT, |worse| worse.number);
-        let groups = [own(channel), like(channel)].map(|group| [&given[..], &group].concat());
+        let groups = [own(channel), like(problem, channel)].map(|group| [&given[..], &group].concat());
         let free = |group: &[usize]| group.iter().any(|k| kept.selection.point.free.contains(k));
         let mut tried = groups.into_iter().filter(|group| free(group));
         let better = |group: &Vec<usize>| Remaining::of(problem, selection, findings, group).wrong() < kept.wrong();
@@ -57,10 +58,19 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
         };
         let why = rise.as_ref().map(|rise| format!("{unseen} predicts {rise}"));
         let as_they_were = findings.to_vec();
+        // What only comes nearer to a form goes before the name does.
+        let whose =
+            |f: &&mut Finding| kept.worse.as_ref().and_then(|w| w.blamed).is_some_and(|card| f.with.contains(&card.id));
+        if let Some(finding) = named(findings).find(whose) {
+            finding.with.clear();
+            continue;
+        }
         let Some(finding) = named(findings).filter(|f| !f.explained.contains_key(MOVES)).find(blamed) else {
-            let Some((selection, why, as_they_were)) = before_blame else { return (kept.selection, why) };
+            let (kept, why, as_they_were) = before_blame.unwrap_or((kept.selection, why, as_they_were));
             findings.clone_from_slice(&as_they_were);
-            return (selection, why);
+            let groups = [own(channel), like(problem, channel), (0..=DISCHARGE).collect()];
+            let no_worse = |group| Remaining::than(Than::Given, problem, selection, findings, group).done();
+            return groups.iter().find_map(|group| no_worse(group)).map_or((kept, why), |kept| (kept, None));
         };
         before_blame.get_or_insert((kept.selection, why, as_they_were));
         finding.suspect(match rise {
@@ -89,10 +99,20 @@ struct Remaining {
 impl Remaining {
     /// With the numbers `given` as the base vehicle has them.
     fn of(problem: &Problem, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
+        Self::than(Than::Either, problem, selection, findings, given)
+    }
+
+    /// The same held against `than`.
+    fn than(than: Than, problem: &Problem, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
         let kept = selection.without(problem, &left_out(selection, findings)).with_given(problem, given);
-        let worse = worse::find(&FittedSelection::new(problem, &kept), &selection.base);
+        let worse = worse::find(&FittedSelection::new(problem, &kept), &selection.base, than);
         let flies = extend::at_rest(problem, &kept).check().is_ok();
         Self { selection: kept, worse, flies }
+    }
+
+    /// The selection, if nothing is wrong with it.
+    fn done(self) -> Option<Selection> {
+        (self.wrong() == 0.0).then_some(self.selection)
     }
 
     /// The share by which a channel is worse; over all unseen flight more than in any part, and no vehicle more than
@@ -106,7 +126,8 @@ impl Remaining {
 /// Effects of the selection that are no part of the extended vehicle's fit: what is suspected, and of the simulator's
 /// whatever is not named, such as what is too small to matter. What the sensors are off by stays with the flights.
 fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
-    let status = |card: &Card| findings.iter().find(|f| f.effect == card.id).map(|f| f.status);
+    let of = |f: &&Finding, card: &Card| f.cards().any(|(own, _)| own.id == card.id);
+    let status = |card: &Card| findings.iter().find(|f| of(f, card)).map(|f| f.status);
     let out = |card: &&'static Card| match status(card) {
         Some(status) => status == Status::Suspected,
         None => MODEL.iter().any(|of_vehicle| of_vehicle.id == card.id),
@@ -116,8 +137,11 @@ fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
 
 /// Sizes in the report are those of the extended vehicle. Lost commands are counted, and not fitted.
 pub fn as_written(kept: &FittedSelection, findings: &mut [Finding]) {
-    for (finding, card) in held(kept, findings) {
-        finding.parameters = shown::parameters(kept, card);
+    for (finding, _) in held(kept, findings) {
+        let own = |(card, prefix): (&Card, String)| {
+            shown::parameters(kept, card).into_iter().map(move |(name, value)| (prefix.clone() + &name, value))
+        };
+        finding.parameters = finding.cards().flat_map(own).collect();
     }
 }
 

@@ -1,28 +1,34 @@
 //! The compact model's numbers of each channel, and which of them flights move without need.
 
-use super::channels::{FORCE, LIFT, OF_VEHICLE, VOLTAGE};
+use super::channels::{FORCE, LIFT, OF_VEHICLE, VOLTAGE, kind};
 use super::fitted::FittedSelection;
-use super::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST};
+use super::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
 use super::pays::{Paid, pays};
 use super::problem::Problem;
 use super::select::Selection;
 use super::unseen::parts;
 use crate::insight::criteria::unseen::PAYS_DEVIATIONS;
+use crate::model::effects::{Card, MODEL};
 
-/// The compact model's numbers of a channel: how a rate goes to its command, drag of an axis, thrust, discharge.
+/// The compact model's numbers of a channel: how a rate goes to its command, drag of an axis, thrust with its time
+/// constant, discharge.
 pub fn own(channel: usize) -> Vec<usize> {
     match channel {
         VOLTAGE => vec![DISCHARGE],
-        LIFT => THRUST.collect(),
+        LIFT => THRUST.chain([TAU.end - 1, DRAG.end - 1]).collect(),
         _ if channel < FORCE => vec![TAU.start + channel, MAX_RATE.start + channel],
         _ => vec![DRAG.start + channel - FORCE],
     }
 }
 
-/// Those of all channels of its kind: rates, or forces with the voltage.
-pub fn like(channel: usize) -> Vec<usize> {
-    let rates = |k: &usize| (TAU.start..TAU.end - 1).contains(k) || MAX_RATE.contains(k);
-    (0..=DISCHARGE).filter(|k| rates(k) == (channel < FORCE)).collect()
+/// The base vehicle's numbers of all channels of its kind, rates or forces with the voltage: the compact model's, and
+/// those of the effects that the base has.
+pub fn like(problem: &Problem, channel: usize) -> Vec<usize> {
+    let of_rates = |k: &usize| (TAU.start..TAU.end - 1).contains(k) || MAX_RATE.contains(k);
+    let compact = (0..=DISCHARGE).filter(|k| of_rates(k) == (channel < FORCE));
+    let about = |card: &&Card| card.channels.contains(&kind(channel));
+    let had = MODEL.into_iter().filter(about).flat_map(span).filter(|&k| problem.model.base[k] != 0.0);
+    compact.chain(had).collect()
 }
 
 /// The fitted numbers, by channel, that need not move from the base vehicle's: on unseen flight it does not surely pay,

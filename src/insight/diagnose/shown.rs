@@ -11,8 +11,9 @@ use std::collections::BTreeMap;
 pub fn parameters(fitted: &FittedSelection, card: &Card) -> BTreeMap<String, Value> {
     let at = span(card);
     let x = &fitted.point().x;
-    let places: Vec<usize> = fitted.places(card);
-    let tau_places = TAU.map(|k| fitted.point().free.iter().position(|f| *f == k));
+    let place = |k: usize| fitted.point().free.iter().position(|f| *f == k);
+    let places: Vec<(usize, usize)> = at.clone().enumerate().filter_map(|(i, k)| Some((i, place(k)?))).collect();
+    let tau_places = TAU.map(place);
     let tau_places: Vec<(usize, usize)> = tau_places.enumerate().filter_map(|(i, at)| Some((i, at?))).collect();
     let values: Vec<f64> = at.clone().map(|k| x[k]).collect();
     let shown = |k: &[f64], tau: [f64; 4]| -> Vec<(String, f64, String)> {
@@ -25,10 +26,10 @@ pub fn parameters(fitted: &FittedSelection, card: &Card) -> BTreeMap<String, Val
     let here = shown(&values, tau);
     // By how much each shown value changes with the fitted ones (delta method).
     let mut out = BTreeMap::new();
-    let fitted_too = |i: usize| card.form != Some(i) || places.len() == card.parameters.len();
+    let fitted_too = |i: usize| !card.forms.contains(&i) || places.iter().any(|(fitted, _)| *fitted == i);
     for (i, (name, value, unit)) in here.iter().enumerate().filter(|(i, _)| fitted_too(*i)) {
         let mut slopes: Vec<(usize, f64)> = Vec::new();
-        for (j, &place) in places.iter().enumerate() {
+        for &(j, place) in &places {
             let step = 1e-4 * card.parameters[j].typical[0];
             let mut moved = values.clone();
             moved[j] += step;

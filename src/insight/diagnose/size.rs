@@ -5,13 +5,13 @@ use super::problem::Problem;
 use crate::insight::criteria::material::MATERIAL_SIZE;
 use crate::model::effects::Card;
 
-/// Whether a number of an effect ends at the bound of its range: then it stands in for something else.
+/// Whether a size of an effect ends at the bound of its range: then it stands in for something else. A form may.
 pub fn is_bounded(problem: &Problem, card: &Card, x: &[f64]) -> bool {
     let at_end = |k: usize| {
         let n = &problem.model.numbers[k];
         x[k] != 0.0 && (x[k] <= n.low || x[k] >= n.high)
     };
-    span(card).any(at_end)
+    span(card).enumerate().any(|(i, k)| !card.forms.contains(&i) && at_end(k))
 }
 
 /// Whether the size of an effect is one that anybody would notice.

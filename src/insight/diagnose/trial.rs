@@ -136,10 +136,11 @@ impl Trials<'_> {
         x
     }
 
-    /// The effect fitted from that of `starts` that does best after a few steps.
+    /// The effect fitted from that of `starts` that does best after a few steps, in the forms that flights show beside
+    /// its size.
     fn fitted(&self, card: &Card, starts: &[Vec<f64>]) -> FitPoint {
-        let form = card.form.map(|i| span(card).start + i);
-        let own: Vec<usize> = span(card).filter(|k| Some(*k) != form).collect();
+        let mut forms: Vec<usize> = card.forms.iter().map(|i| span(card).start + i).collect();
+        let mut own: Vec<usize> = span(card).filter(|k| !forms.contains(k)).collect();
         let glance = |x: &Vec<f64>| fit::refit_in(GLANCE, self.problem, self.whitener, self.point, &own, x);
         let first = match starts {
             [only] => only.clone(),
@@ -148,14 +149,23 @@ impl Trials<'_> {
                 all.min_by(|a, b| a.total().total_cmp(&b.total())).map_or(self.point.x.clone(), |at| at.x)
             }
         };
-        let plain = fit::refit(self.problem, self.whitener, self.point, &own, &first);
-        if form.is_none() {
-            return plain;
+        let mut best = fit::refit(self.problem, self.whitener, self.point, &own, &first);
+        let least = LEAST_GAIN.get().max(FORM_GAIN.get() * (self.point.total() - best.total()));
+        loop {
+            let with = |&k: &usize| {
+                let all = [&own[..], &[k]].concat();
+                (k, fit::refit(self.problem, self.whitener, self.point, &all, &best.x))
+            };
+            let tried = forms.iter().map(with).min_by(|a, b| a.1.total().total_cmp(&b.1.total()));
+            match tried {
+                Some((form, point)) if best.total() - point.total() > least => {
+                    forms.retain(|k| *k != form);
+                    own.push(form);
+                    best = point;
+                }
+                _ => return best,
+            }
         }
-        let all: Vec<usize> = span(card).collect();
-        let formed = fit::refit(self.problem, self.whitener, self.point, &all, &plain.x);
-        let [size, form] = [self.point.total() - plain.total(), plain.total() - formed.total()];
-        if form > LEAST_GAIN.get() && form > FORM_GAIN.get() * size { formed } else { plain }
     }
 
     /// The point's numbers, with the time constants that a delay is mistaken for shorter by it: a lag that was fitted

@@ -1,5 +1,6 @@
 //! Never worse: whether the extended model predicts unseen flight, all of it or a part, worse in any channel than the
-//! better of the vehicle that was given and the compact model fitted to the same flights; and which effect does it.
+//! vehicle that was given, or than the better of that and the compact model fitted to the same flights; and which
+//! effect does it.
 
 use super::channels::{CHANNELS, NAMES, OF_VEHICLE, kind};
 use super::fit::FitPoint;
@@ -25,6 +26,15 @@ pub struct Worse {
     pub blamed: Option<&'static Card>,
 }
 
+/// What an extended model is held against.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Than {
+    /// The vehicle that was given.
+    Given,
+    /// In each channel the better of that and the compact model fitted to the same flights.
+    Either,
+}
+
 /// Squares of the residuals of each channel, by stretch of time, on unseen flight.
 type Squares = Vec<Vec<f64>>;
 
@@ -44,9 +54,9 @@ fn add(problem: &Problem, sums: &mut Squares, residual: &ChannelValues, out: &[b
     }
 }
 
-/// The channel that the extended model of `fitted` predicts worst, if it predicts any worse than the better of `base`,
-/// the compact model fitted, and the vehicle that was given.
-pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
+/// The channel that the extended model of `fitted` predicts worst, if it predicts any worse `than` those; `base` is the
+/// compact model fitted.
+pub fn find(fitted: &FittedSelection, base: &FitPoint, than: Than) -> Option<Worse> {
     let problem = fitted.problem;
     let whitener = &fitted.selection.whitener;
     let white = whitener.apply(&base.residual, &problem.rows);
@@ -69,8 +79,8 @@ pub fn find(fitted: &FittedSelection, base: &FitPoint) -> Option<Worse> {
     // What one would go on with otherwise: of both the better one, where the fitted one could fly. Neither need be that
     // in every part.
     let total = |squares: &Squares, c: usize| squares[c].iter().sum::<f64>();
-    let flies = problem.model.vehicle_at(&base.x).check().is_ok();
-    let reference = |c: usize| if !flies || total(&given, c) < total(&compact, c) { &given } else { &compact };
+    let alone = than == Than::Given || problem.model.vehicle_at(&base.x).check().is_err();
+    let reference = |c: usize| if alone || total(&given, c) < total(&compact, c) { &given } else { &compact };
     // All unseen flight, then each part: what pays in two thirds may fail in the third.
     let mut spans = parts(problem);
     spans.insert(0, vec![true; problem.blocks]);

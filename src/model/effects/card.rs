@@ -16,8 +16,8 @@ pub struct Card {
     pub parameters: &'static [EffectParameter],
     /// Which parameter is no size but a form, such as a time constant: it means nothing where the size is 0.
     pub shape: Option<usize>,
-    /// Which parameter is fitted only where flights show it beside the size, such as how that goes with the speed.
-    pub form: Option<usize>,
+    /// Which parameters are fitted only where flights show them beside the size, such as how that goes with the speed.
+    pub forms: &'static [usize],
     /// Identifiers of the effects that it is the whole of, each at its own size.
     pub parts: &'static [&'static str],
     /// Identifiers of effects that every vehicle has and that together look like it: it is named where they do worse.
@@ -64,7 +64,7 @@ impl Card {
         kind: EffectKind::Thrust,
         parameters: &[],
         shape: None,
-        form: None,
+        forms: &[],
         parts: &[],
         together: &[],
         writes: &[],

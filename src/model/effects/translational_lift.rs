@@ -16,7 +16,7 @@ impl Effect for TranslationalLift {
             EffectParameter { name: "k", unit: "1/m", low: 0.0, high: 0.08, typical: [0.003, 0.03] },
             EffectParameter { name: "forward", unit: "1/m", low: -0.08, high: 0.08, typical: [0.003, 0.03] },
         ],
-        form: Some(1),
+        forms: &[1],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],

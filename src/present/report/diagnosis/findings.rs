@@ -88,6 +88,9 @@ fn rivals(f: &Finding) -> Markup {
             p {
                 b { "These flights do not tell it from " (list(&others)) "." }
                 " To tell them apart, fly " (f.manoeuvre) "."
+                @if !f.with.is_empty() {
+                    " Its form is not quite any of theirs: with " (list(&f.with)) " it comes nearer."
+                }
             }
         } @else if f.status == Status::Suspected {
             p {
