@@ -25,4 +25,6 @@ criteria! {
     LOST_DELAY = 3.0, Assumed("bursts of lost commands have a mean delay beyond a single one's");
     /// Share of what the motors differ by that a single one has to account for to be weak.
     ALONE_SHARE = 0.75, Theory("a centre of mass that is off gives a third, off in two directions at most two thirds");
+    /// Share of a constant error along the thrust that it may have across, for a vibration to look like it.
+    ACROSS_SHARE = 0.25, Assumed("a vibration of the motors acts along the thrust; the rest is the noise of the fit");
 }

@@ -8,8 +8,8 @@ use super::numbers::span;
 use super::select::Added;
 use super::unseen::deviations;
 use crate::insight::criteria::material::MATERIAL_BIAS;
-use crate::insight::criteria::rival::TIE_DEVIATIONS;
-use crate::model::effects::{self, Card, ResidualChannel, Role};
+use crate::insight::criteria::rival::{ACROSS_SHARE, TIE_DEVIATIONS};
+use crate::model::effects::{self, Card, Quantity, ResidualChannel, Role};
 
 /// Those that matter, judged.
 pub fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
@@ -26,7 +26,8 @@ pub fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
 }
 
 /// Rivals of a constant error that explain the flights as well in its place: a flight at one throttle does not tell
-/// what goes with the throttle from what is always there.
+/// what goes with the throttle from what is always there. How a vibration goes with it is each vehicle's own, so that
+/// an error along the thrust alone may always be one.
 fn taken_for(fitted: &FittedSelection, card: &Card) -> Vec<&'static Card> {
     let (problem, point) = (fitted.problem, fitted.point());
     let rivals = card.rivals.iter().filter_map(|id| effects::card(id)).filter(|rival| rival.writes == card.writes);
@@ -39,5 +40,10 @@ fn taken_for(fitted: &FittedSelection, card: &Card) -> Vec<&'static Card> {
         let worse: Vec<f64> = other.cost.iter().zip(&point.cost).map(|(a, b)| a - b).collect();
         deviations(&worse) < TIE_DEVIATIONS.get()
     };
-    new.filter(as_good).collect()
+    let along_thrust = {
+        let [x, y, z] = [0, 1, 2].map(|i| point.x[span(card).start + i].abs());
+        x.hypot(y) < ACROSS_SHARE.get() * z
+    };
+    let shakes = |rival: &&'static Card| along_thrust && rival.reads.contains(&Quantity::ThrustCommand);
+    new.filter(|rival| shakes(rival) || as_good(rival)).collect()
 }

@@ -1,5 +1,5 @@
-//! Drag along the thrust: f_z -= (1 +- climb) (k + square (|v_z| - 5 m/s)) v_z, never less than none. At `square` = 0 it
-//! goes with the speed, at `square` = k / (5 m/s) with its square, as a plate's, and below 0 it grows less than the
+//! Drag along the thrust: f_z -= (1 +- climb) (k + square (|v_z| - 5 m/s)) v_z, never less than none. At `square` = 0
+//! it goes with the speed, at `square` = k / (5 m/s) with its square, as a plate's, and below 0 it grows less than the
 //! speed. By the share `climb` it is more in climbs and less in descents; at 1 only climbs are braked.
 
 use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
