@@ -6,7 +6,7 @@ use crate::truth::hidden::{Setting, Style, fly};
 use racer::insight::diagnose::numbers::span;
 use racer::insight::diagnose::problem::{ChannelValues, Problem};
 use racer::insight::quality::check;
-use racer::model::effects;
+use racer::model::effects::{self, Card};
 use rayon::prelude::*;
 
 /// A flight of so many seconds.
@@ -22,7 +22,9 @@ fn moved(problem: &Problem, x: &[f64], k: usize) -> Vec<f64> {
     let mut out = x.to_vec();
     let number = &problem.model.numbers[k];
     out[k] = (x[k] + 20.0 * number.step).clamp(number.low, number.high);
-    if let Some(card) = effects::cards().find(|card| card.shape.is_some_and(|i| span(card).start + i == k)) {
+    let of = |i: &usize, card: &Card| span(card).start + i == k;
+    let is_form = |card: &&Card| card.shape.iter().chain(card.forms).any(|i| of(i, card));
+    if let Some(card) = effects::cards().find(is_form) {
         out[span(card).start] = card.parameters[0].typical[1];
     }
     out
@@ -70,7 +72,9 @@ fn every_number_changes_the_prediction() {
         let mut x = moved(problem, base, k);
         // A limit shows where it is reached.
         x[k] = x[k].max(typical);
-        let [changed, plain] = [&x, base].map(|x| problem.pick(&problem.predict(x)));
+        let mut without = x.clone();
+        without[k] = base[k];
+        let [changed, plain] = [&x, &without].map(|x| problem.pick(&problem.predict(x)));
         !differ(&changed, &plain, &problem.measured).is_empty()
     };
     for card in effects::cards().filter(|card| !card.writes.is_empty()) {
