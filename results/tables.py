@@ -176,16 +176,25 @@ def rotorpy_diagnosis():
     return table(head, body)
 
 
+def other_builds():
+    """The third truth's logs of 100 s by seed and build, of those that flew at least 40, in the order they were flown."""
+    builds = {}
+    for r in rows("other-truth", flight_s="100"):
+        builds.setdefault((r["seed"], r["build"]), []).append(r)
+    return {key: of for key, of in builds.items() if len(of) >= 40}
+
+
+def other_latest():
+    """Those of the latest seed."""
+    return list(other_builds().values())[-1]
+
+
 def other_truth():
     """The third truth's logs of 100 s, by seed and build."""
-    builds = {}
-    for r in rows("other-truth"):
-        if r["seed"] in ("21", "22", "24", "25", "26", "27", "28", "29"):
-            builds.setdefault((r["seed"], r["build"]), []).append(r)
     share = lambda of, said: wilson(sum(map(said, of)), len(of)).replace(" %)", ")").replace(" of ", "/") if of else "-"
     right = lambda r: r["first_right"] == "1"
     body = []
-    for (seed, build), of in builds.items():
+    for (seed, build), of in other_builds().items():
         hidden = [r for r in of if r["group"] in ("one", "two")]
         clean = [r for r in of if r["group"] == "none"]
         told = [r for r in hidden if r["nameable"] == "1"]
@@ -221,8 +230,8 @@ def soak():
 
 
 def other_groups():
-    """The most logs of one build of the third truth, by what is hidden."""
-    of = rows("other-truth", seed="29")
+    """The latest logs of the third truth, by what is hidden."""
+    of = other_latest()
     is_in = lambda *groups: [r for r in of if r["group"] in groups]
     share = lambda which, said: wilson(sum(map(said, which)), len(which)) if which else "-"
     right = lambda r: r["first_right"] == "1"
@@ -244,7 +253,7 @@ def other_groups():
 
 def other_extended():
     """Their extended vehicles: trained for a moment, and held against another flight."""
-    of = rows("other-truth", seed="29")
+    of = other_latest()
     written = [r for r in of if r["extended"] == "1"]
     why = {}
     for r in of:
