@@ -137,6 +137,36 @@ fn lift_in_forward_flight_is_a_form_of_lift() {
     assert!(lift.status != Status::Suspected && lift.parameters["forward"].low > 0.0, "{lift:?}");
 }
 
+/// Rule 1: drag that climbs have and descents have not, with the square of the speed, is a form of the one cause, and
+/// leaves nothing. An inflow and a vortex ring were suspected beside it.
+#[test]
+fn drag_in_climbs_alone_is_a_form_of_vertical_drag() {
+    let diagnosis = said_of([29, 277], 0.91828, 1000.0, ("climb_drag", 0.0503));
+    let drag = diagnosis.findings.iter().find(|f| f.effect == "vertical_drag").expect("named");
+    assert!(drag.status == Status::Named && drag.parameters["climb"].low > 0.8, "{drag:?}");
+    // Twice `square` with a climb of 1.
+    assert!((2.0 * drag.parameters["square"].value - 0.0503).abs() < 5e-3, "{drag:?}");
+}
+
+/// Rule 3: a scale of one axis of the accelerometer shows in that axis.
+#[test]
+fn an_accelerometers_scale_is_each_axis_own() {
+    let diagnosis = said_of([29, 217], 0.71537, 1000.0, ("accel_axis", 0.0304));
+    let scale = diagnosis.findings.iter().find(|f| f.effect == "accel_scale").expect("named");
+    let [x, y, z] = ["x", "y", "z"].map(|axis| scale.parameters[axis].value);
+    assert!(scale.status == Status::Named && (x - 0.0304).abs() < 5e-3, "{scale:?}");
+    assert!(y.abs() < 5e-3 && z.abs() < 5e-3, "{scale:?}");
+}
+
+/// Rule 6: a vibration goes with the throttle by a law of the vehicle's own, so that a constant error along the thrust
+/// alone may be one. It was named for sure.
+#[test]
+fn a_constant_error_along_the_thrust_may_be_a_vibration() {
+    let diagnosis = said_of([29, 86], 1.43848, 500.0, ("vibration_bell", 0.8685));
+    let error = diagnosis.findings.iter().find(|f| f.effect == "accel_bias").expect("found");
+    assert!(error.members.contains(&"vibration_rectification"), "{error:?}");
+}
+
 /// Rule 10: a rate loop that answers late, and later as the battery empties, is no clock that runs fast, which would
 /// shift the thrust as well.
 #[test]

@@ -100,8 +100,8 @@ fn paragraph(f: &Finding) -> String {
             f.channel, g.before, g.unit, g.after
         )
     });
-    let form =
-        if f.with.is_empty() { "" } else { "\n   its form is not quite any of these: with both it comes nearer" };
+    let nearer = || format!("\n   its form is not quite any of these: with {} it comes nearer", f.with.join(", "));
+    let form = if f.with.is_empty() { String::new() } else { nearer() };
     format!(
         "{} ({}){status}{form}\n   {}\n   {}\n   {explained}{:.0} stretches agree; {:.2} m/s after a second{gain}",
         f.name,

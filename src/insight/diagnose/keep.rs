@@ -4,7 +4,6 @@ use super::cause::MOVES;
 use super::channels::LIFT;
 use super::finding::{Finding, Status};
 use super::fitted::FittedSelection;
-use super::numbers::DISCHARGE;
 use super::own_numbers::{like, own, unpaid};
 use super::problem::Problem;
 use super::replication::stretches;
@@ -68,7 +67,8 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
         let Some(finding) = named(findings).filter(|f| !f.explained.contains_key(MOVES)).find(blamed) else {
             let (kept, why, as_they_were) = before_blame.unwrap_or((kept.selection, why, as_they_were));
             findings.clone_from_slice(&as_they_were);
-            let groups = [own(channel), like(problem, channel), (0..=DISCHARGE).collect()];
+            let all = [like(problem, 0), like(problem, LIFT)].concat();
+            let groups = [own(channel), like(problem, channel), all];
             let no_worse = |group| Remaining::than(Than::Given, problem, selection, findings, group).done();
             return groups.iter().find_map(|group| no_worse(group)).map_or((kept, why), |kept| (kept, None));
         };
