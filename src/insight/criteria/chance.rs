@@ -32,6 +32,8 @@ criteria! {
     GUST_BALANCED = 0.15, Assumed(UNRECORDED);
     /// Memory of gusts, s.
     GUST_MEMORY_S = 0.05, Theory("an eddy of a metre at 20 m/s passes in it");
+    /// Memory from which gusts beside a wind are rather that wind, which turns or grows with height, s.
+    GUST_MEMORY_MOST_S = 2.0, Assumed("three times that of stirred air in the third truth, half that of winds there");
     /// Share of them that points the same way in the world four seconds later, from which they are rather a wind.
     GUST_ONE_WAY = 0.33, Assumed("gusts of three seconds have 0.27, winds that turn in the third truth 0.38 and more");
     /// Gusts are so many times what the errors of the logged velocity look like in the forces.

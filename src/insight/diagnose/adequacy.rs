@@ -69,7 +69,9 @@ pub fn doubt(
     // Where the largest cause has not quite the right form, small ones make up for it.
     let odds = |f: &Finding| f.explained.get(finding.channel).map_or(0.0, |s| s / (1.0 - s.min(0.999_999)));
     let largest = findings.iter().max_by(|a, b| odds(a).total_cmp(&odds(b)));
-    let small = |l: &&Finding| !finding.explained.contains_key(MOVES) && odds(finding) < SMALL_BESIDE.get() * odds(l);
+    // What has no mean explains no share.
+    let measured = !finding.has(Role::RandomForce) && !finding.explained.contains_key(MOVES);
+    let small = |l: &&Finding| measured && odds(finding) < SMALL_BESIDE.get() * odds(l);
     // No estimator is late by one lag, or by one delay: what it leaves is small, and is its own.
     let estimated = |l: &Finding| l.has(Role::VelocityLag) && l.status != Status::Suspected;
     if let Some(largest) = largest.filter(small)

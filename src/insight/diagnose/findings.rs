@@ -59,6 +59,10 @@ impl Judgement {
         for finding in self.findings.iter_mut().filter(|f| placed && f.has(Role::UniformWind)) {
             finding.suspect("the wind is not the same everywhere".into());
         }
+        let windy = self.findings.iter().any(|f| f.has(Role::UniformWind) && f.status != Status::Suspected);
+        for finding in self.findings.iter_mut().filter(|f| windy && gusts::last_like_wind(f)) {
+            finding.suspect("beside a wind it lasts for seconds: the wind may turn, or grow with height".into());
+        }
         for finding in self.findings.iter_mut().filter(|f| f.status == Status::Named) {
             open(finding, &all, &self.unexplained);
         }

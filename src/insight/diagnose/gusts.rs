@@ -10,7 +10,7 @@ use super::select::Selection;
 use super::steady_air;
 use crate::base::stats::{NORMAL_95, mean, median};
 use crate::insight::criteria::chance::{
-    ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_S, GUST_ONE_WAY, GUST_STRUCTURE,
+    ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_MOST_S, GUST_MEMORY_S, GUST_ONE_WAY, GUST_STRUCTURE,
 };
 use crate::insight::criteria::flown::GUST_ROWS;
 use crate::insight::criteria::material::MATERIAL_GUST;
@@ -59,6 +59,11 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
         found.suspect("it pushes one way for seconds: a wind that turns, or that is not the same everywhere".into());
     }
     Some(found)
+}
+
+/// Whether these gusts last for so long that a wind which turns, or grows with height, leaves the same.
+pub fn last_like_wind(gusts: &Finding) -> bool {
+    gusts.has(Role::RandomForce) && gusts.parameters.get("tau").is_some_and(|tau| tau.value > GUST_MEMORY_MOST_S.get())
 }
 
 /// What errors of the logged velocity look like in the forces, m/s2: how much of it the pushes show, which the air has
