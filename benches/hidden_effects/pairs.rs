@@ -53,7 +53,7 @@ const ALIKE: [&str; 12] = [
     "drag_root",
     "drag_linear",
     "inflow_root",
-    "climb_drag",
+    "climb_power",
     "nose_lift",
     "nose_drag",
     "throttle_link",

@@ -392,15 +392,17 @@ fn forces_follow_the_equations() {
         }
     }
 
-    // Forms: drag that grows more, or less, than the speed, and never pushes, or not one way; lift of one direction.
-    for (id, k, z) in [
-        ("vertical_drag", &[0.2, 0.04, 0.0][..], -(0.2 - 0.04) * vz),
-        ("vertical_drag", &[0.02, 0.04, 0.0], 0.0),
-        ("vertical_drag", &[0.2, 0.04, 0.5], -(0.2 - 0.04) * (vz + 0.5 * vz.abs())),
-        ("vertical_drag", &[0.2, 0.04, -vz.signum()], 0.0),
-        ("translational_lift", &[0.01, 0.004], 0.014 * vx * vx + 0.006 * vy * vy),
+    // Forms: drag that grows more, or less, than the speed, and never pushes, or not one way; of the whole flow; lift of
+    // one direction.
+    for (id, k, axis, want) in [
+        ("vertical_drag", &[0.2, 0.04, 0.0][..], 2, -(0.2 - 0.04) * vz),
+        ("vertical_drag", &[0.02, 0.04, 0.0], 2, 0.0),
+        ("vertical_drag", &[0.2, 0.04, 0.5], 2, -(0.2 - 0.04) * (vz + 0.5 * vz.abs())),
+        ("vertical_drag", &[0.2, 0.04, -vz.signum()], 2, 0.0),
+        ("translational_lift", &[0.01, 0.004], 2, 0.014 * vx * vx + 0.006 * vy * vy),
+        ("drag_asymmetry", &[0.005, 0.5], 0, -0.005 * vx.abs() * (0.5 * vx.abs() + 0.5 * askew)),
     ] {
-        close(felt(&one(id, k), s)[2] - base[2], z, 1e-9, id);
+        close(felt(&one(id, k), s)[axis] - base[axis], want, 1e-9, id);
     }
 
     // Half way between full and empty nothing is compensated, elsewhere all or half of it.

@@ -8,7 +8,7 @@ use super::own_numbers::{like, own, unpaid};
 use super::problem::Problem;
 use super::replication::stretches;
 use super::select::Selection;
-use super::worse::{self, Than, Worse};
+use super::worse::{self, Reference, Than, Worse};
 use super::{extend, shown};
 use crate::base::check::Check;
 use crate::model::effects::{self, Card, EffectKind, MODEL, Role};
@@ -20,12 +20,13 @@ const OVER_ALL: f64 = 1e6;
 /// without that, nor what makes unseen flight worse where what is left does not. With the reason why it is worse, even
 /// than the vehicle that was given, where nothing helps: then every name stands as it did.
 pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> (Selection, Option<String>) {
-    let caused = with_cause(problem, selection, findings);
+    let reference = Reference::new(problem, selection);
+    let caused = with_cause(&reference, selection, findings);
     let selection = caused.as_ref().unwrap_or(selection);
     let mut given: Vec<usize> = Vec::new();
     let mut before_blame: Option<(Selection, Option<String>, Vec<Finding>)> = None;
     loop {
-        let kept = Remaining::of(problem, selection, findings, &given);
+        let kept = Remaining::of(&reference, selection, findings, &given);
         if let Some(finding) = leaning(&FittedSelection::new(problem, &kept.selection), findings) {
             finding.suspect("its size is not sure without what is only suspected".into());
             continue;
@@ -34,7 +35,7 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
             let unpaid = unpaid(problem, &kept.selection);
             let together = (unpaid.len() > 1).then(|| unpaid.concat());
             let mut more = together.into_iter().chain(unpaid).map(|group| [&given[..], &group].concat());
-            let no_worse = |group: &Vec<usize>| Remaining::of(problem, selection, findings, group).wrong() == 0.0;
+            let no_worse = |group: &Vec<usize>| Remaining::of(&reference, selection, findings, group).wrong() == 0.0;
             let Some(group) = more.find(no_worse) else { return (kept.selection, None) };
             given = group;
             continue;
@@ -44,7 +45,7 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
         let groups = [own(channel), like(problem, channel)].map(|group| [&given[..], &group].concat());
         let free = |group: &[usize]| group.iter().any(|k| kept.selection.point.free.contains(k));
         let mut tried = groups.into_iter().filter(|group| free(group));
-        let better = |group: &Vec<usize>| Remaining::of(problem, selection, findings, group).wrong() < kept.wrong();
+        let better = |group: &Vec<usize>| Remaining::of(&reference, selection, findings, group).wrong() < kept.wrong();
         if let Some(group) = tried.find(better) {
             given = group;
             continue;
@@ -69,7 +70,7 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
             findings.clone_from_slice(&as_they_were);
             let all = [like(problem, 0), like(problem, LIFT)].concat();
             let groups = [own(channel), like(problem, channel), all];
-            let no_worse = |group| Remaining::than(Than::Given, problem, selection, findings, group).done();
+            let no_worse = |group| Remaining::than(Than::Given, &reference, selection, findings, group).done();
             return groups.iter().find_map(|group| no_worse(group)).map_or((kept, why), |kept| (kept, None));
         };
         before_blame.get_or_insert((kept.selection, why, as_they_were));
@@ -81,11 +82,11 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
 }
 
 /// The selection with the named cause of all moves of thrust and drag in their place, where that is no worse.
-fn with_cause(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> Option<Selection> {
+fn with_cause(reference: &Reference, selection: &Selection, findings: &mut [Finding]) -> Option<Selection> {
     let cause = named(findings).find(|f| f.explained.contains_key(MOVES))?;
     let card = effects::card(cause.effect)?;
-    let caused = selection.with_cause(problem, card, cause.parameters.get(card.parameters[0].name)?.value);
-    let wrong = |selection| Remaining::of(problem, selection, findings, &[]).wrong();
+    let caused = selection.with_cause(reference.problem, card, cause.parameters.get(card.parameters[0].name)?.value);
+    let wrong = |selection| Remaining::of(reference, selection, findings, &[]).wrong();
     (wrong(&caused) <= wrong(selection)).then_some(caused)
 }
 
@@ -98,14 +99,15 @@ struct Remaining {
 
 impl Remaining {
     /// With the numbers `given` as the base vehicle has them.
-    fn of(problem: &Problem, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
-        Self::than(Than::Either, problem, selection, findings, given)
+    fn of(reference: &Reference, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
+        Self::than(Than::Either, reference, selection, findings, given)
     }
 
     /// The same held against `than`.
-    fn than(than: Than, problem: &Problem, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
+    fn than(than: Than, reference: &Reference, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
+        let problem = reference.problem;
         let kept = selection.without(problem, &left_out(selection, findings)).with_given(problem, given);
-        let worse = worse::find(&FittedSelection::new(problem, &kept), &selection.base, than);
+        let worse = worse::find(&FittedSelection::new(problem, &kept), reference, than);
         let flies = extend::at_rest(problem, &kept).check().is_ok();
         Self { selection: kept, worse, flies }
     }

@@ -3,12 +3,14 @@
 //! effect does it.
 
 use super::channels::{CHANNELS, NAMES, OF_VEHICLE, kind};
-use super::fit::FitPoint;
+use super::fit::{FitPoint, fit};
 use super::fitted::FittedSelection;
 use super::numbers::LOG_AT;
 use super::pays::removed;
 use super::problem::{ChannelValues, Problem};
+use super::select::Selection;
 use super::unseen::{parts, rise, seen, without};
+use super::whiten::Whitener;
 use crate::base::check::Check;
 use crate::insight::estimate::gram::Grams;
 use crate::model::effects::{Card, EffectKind, MODEL, ResidualChannel};
@@ -38,6 +40,54 @@ pub enum Than {
 /// Squares of the residuals of each channel, by stretch of time, on unseen flight.
 type Squares = Vec<Vec<f64>>;
 
+/// What flights are without an extended model on unseen flight: as the vehicle that was given predicts them, and as the
+/// compact model that is fitted to them does.
+pub struct Reference<'a> {
+    pub problem: &'a Problem,
+    given: Squares,
+    compact: Squares,
+    /// Whether the fitted one could fly.
+    flies: bool,
+}
+
+impl<'a> Reference<'a> {
+    pub fn new(problem: &'a Problem, selection: &Selection) -> Self {
+        let (whitener, compact) = (&selection.whitener, &selection.base);
+        // Errors of the sensors and the voltage at the beginning are the flight's, not the vehicle's.
+        let of_flight: Vec<usize> = compact.free.iter().copied().filter(|k| *k >= LOG_AT).collect();
+        let mut x = compact.x.clone();
+        x[..LOG_AT].copy_from_slice(&problem.model.base[..LOG_AT]);
+        let given = fit(problem, whitener, &x, &of_flight);
+        let flies = problem.model.vehicle_at(&compact.x).check().is_ok();
+        let on_unseen = |point: &FitPoint| on_unseen(problem, whitener, point, &grams(problem, whitener, point));
+        Self { problem, given: on_unseen(&given), compact: on_unseen(compact), flies }
+    }
+
+    /// Of channel `c` what is hardest to be no worse than: neither need be the better one in every part.
+    fn squares(&self, c: usize, than: Than) -> &[f64] {
+        let total = |squares: &Squares| squares[c].iter().sum::<f64>();
+        let compact = than == Than::Either && self.flies && total(&self.compact) <= total(&self.given);
+        if compact { &self.compact[c] } else { &self.given[c] }
+    }
+}
+
+/// Inner products of what is linear about `point`, by stretch of time.
+fn grams(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> Grams {
+    let white = whitener.apply(&point.residual, &problem.rows);
+    let columns: Vec<&ChannelValues> = point.white.iter().chain([&white]).collect();
+    Grams::new(&columns, &problem.rows, problem.blocks)
+}
+
+/// What `point` leaves in each part, fitted to the others.
+fn on_unseen(problem: &Problem, whitener: &Whitener, point: &FitPoint, grams: &Grams) -> Squares {
+    let mut sums = zeros(problem);
+    for out in parts(problem) {
+        let x = without(problem, whitener, point, grams, &out);
+        add(problem, &mut sums, &problem.residuals(&problem.predict(&x)), &out);
+    }
+    sums
+}
+
 fn zeros(problem: &Problem) -> Squares {
     vec![vec![0.0; problem.blocks]; CHANNELS]
 }
@@ -54,40 +104,18 @@ fn add(problem: &Problem, sums: &mut Squares, residual: &ChannelValues, out: &[b
     }
 }
 
-/// The channel that the extended model of `fitted` predicts worst, if it predicts any worse `than` those; `base` is the
-/// compact model fitted.
-pub fn find(fitted: &FittedSelection, base: &FitPoint, than: Than) -> Option<Worse> {
+/// The channel that the extended model of `fitted` predicts worst, if it predicts any worse `than` the `reference`.
+pub fn find(fitted: &FittedSelection, reference: &Reference, than: Than) -> Option<Worse> {
     let problem = fitted.problem;
-    let whitener = &fitted.selection.whitener;
-    let white = whitener.apply(&base.residual, &problem.rows);
-    let columns: Vec<&ChannelValues> = base.white.iter().chain([&white]).collect();
-    let grams = Grams::new(&columns, &problem.rows, problem.blocks);
-    let (mut extended, mut compact, mut given) = (zeros(problem), zeros(problem), zeros(problem));
-    for out in parts(problem) {
-        let tried = |sums: &mut Squares, x: &[f64]| {
-            let residual = problem.residuals(&problem.predict(x));
-            add(problem, sums, &residual, &out);
-        };
-        tried(&mut extended, &without(problem, whitener, fitted.point(), &fitted.grams, &out));
-        let fitted_base = without(problem, whitener, base, &grams, &out);
-        tried(&mut compact, &fitted_base);
-        // Errors of the sensors and the voltage at the beginning are the flight's, not the vehicle's.
-        let mut as_given = fitted_base;
-        as_given[..LOG_AT].copy_from_slice(&problem.model.base[..LOG_AT]);
-        tried(&mut given, &as_given);
-    }
-    // What one would go on with otherwise: of both the better one, where the fitted one could fly. Neither need be that
-    // in every part.
-    let total = |squares: &Squares, c: usize| squares[c].iter().sum::<f64>();
-    let alone = than == Than::Given || problem.model.vehicle_at(&base.x).check().is_err();
-    let reference = |c: usize| if alone || total(&given, c) < total(&compact, c) { &given } else { &compact };
+    let extended = on_unseen(problem, &fitted.selection.whitener, fitted.point(), &fitted.grams);
     // All unseen flight, then each part: what pays in two thirds may fail in the third.
     let mut spans = parts(problem);
     spans.insert(0, vec![true; problem.blocks]);
     spans.iter().find_map(|span| {
         let of =
             |squares: &[f64]| -> Vec<f64> { squares.iter().zip(span).filter(|(_, s)| **s).map(|(x, _)| *x).collect() };
-        let rises = OF_VEHICLE.into_iter().filter_map(|c| Some((c, rise(&of(&reference(c)[c]), &of(&extended[c]))?)));
+        let rise = |c: usize| rise(&of(reference.squares(c, than)), &of(&extended[c]));
+        let rises = OF_VEHICLE.into_iter().filter_map(|c| Some((c, rise(c)?)));
         let (c, by) = rises.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let whole = span.iter().all(|s| *s);
         Some(Worse { number: c, channel: NAMES[c].0, by, whole, blamed: blamed(fitted, c, span) })

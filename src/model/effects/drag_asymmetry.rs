@@ -1,7 +1,9 @@
-//! Drag that differs between forward and backward: f_x -= k v_x^2.
+//! Drag that differs between forward and backward: f_x -= k |v_x| (|v_x| + flow (|v| - |v_x|)). At `flow` = 0 the nose
+//! is braked by the speed along it alone, at 1 by that of the whole flow, as the compact model's drag is.
 
 use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
+use crate::model::attitude::dot;
 
 pub struct DragAsymmetry;
 
@@ -11,7 +13,11 @@ impl Effect for DragAsymmetry {
         name: "different drag forward and backward",
         sentence: "at the same lean the vehicle is faster in one direction than in the other",
         kind: EffectKind::Drag,
-        parameters: &[EffectParameter { name: "k", unit: "1/m", low: -0.02, high: 0.02, typical: [0.001, 0.008] }],
+        parameters: &[
+            EffectParameter { name: "k", unit: "1/m", low: -0.02, high: 0.02, typical: [0.001, 0.008] },
+            EffectParameter { name: "flow", unit: "1", low: 0.0, high: 1.5, typical: [0.3, 1.0] },
+        ],
+        forms: &[1],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
@@ -23,7 +29,9 @@ impl Effect for DragAsymmetry {
 
     #[inline(always)]
     fn aerodynamic_forces<R: Real>(k: &[R], forces: &mut AerodynamicForces<R>) {
-        let x = forces.velocity[0];
-        forces.force[0] = forces.force[0] - k[0] * x * x;
+        let v = forces.velocity;
+        let nose = v[0].abs();
+        let flow = k[1].mul_add(dot(v, v).sqrt() - nose, nose);
+        forces.force[0] = forces.force[0] - k[0] * nose * flow;
     }
 }

@@ -92,9 +92,11 @@ fn extra(faults: &Faults, thrust: f64, v: &Vector3<f64>) -> Vector3<f64> {
     let root = (thrust.max(0.0) / GRAVITY).sqrt();
     let flat = Vector3::new(v.x, v.y, 0.0);
     let mut force = -flat * (faults.of("drag_root") * root + faults.of("drag_linear"));
-    force.z -= faults.of("climb_drag") * v.z.max(0.0).powi(2) + faults.of("soft_drag") * 3.0 * (v.z / 3.0).tanh();
-    let forward = v.x.max(0.0);
-    force.x -= faults.of("nose_drag") * forward * forward + faults.of("nose_speed") * forward * v.norm();
+    let (forward, up) = (v.x.max(0.0), v.z.max(0.0));
+    force.z -= faults.of("climb_drag") * up * up + faults.of("climb_power") * up.powf(1.5);
+    force.z -= faults.of("soft_drag") * 3.0 * (v.z / 3.0).tanh();
+    let nose = faults.of("nose_drag") * forward + faults.of("nose_speed") * v.norm() + faults.of("nose_linear");
+    force.x -= nose * forward;
     let plate = faults.of("plate_lift");
     force.z -= plate * v.x.abs() * v.z;
     force.x += plate * v.z * v.z * v.x.signum() * v.x.abs().min(1.0);

@@ -38,12 +38,12 @@ pub const KINDS: &[Kind] = &[
     // Thrust lost in climbs: with the root of the thrust, 1/s; by momentum theory, share of the induced velocity.
     kind("inflow_root", &["axial_inflow"], 0.3, 1.2),
     kind("inflow_momentum", &["axial_inflow", "translational_lift"], 0.25, 0.7),
-    // Vertical drag of a plate above, in climbs alone (1/m), and one that saturates (1/s).
-    kind("climb_drag", &["vertical_drag"], 0.02, 0.06),
+    // Vertical drag in climbs alone, with another power of the speed (m^-1/2 s^-1/2), and one that saturates (1/s).
+    kind("climb_power", &["vertical_drag"], 0.045, 0.13),
     kind("soft_drag", &["vertical_drag"], 0.1, 0.4),
-    // Forwards only (1/m): with the square, and with the whole speed.
+    // Forwards only: with the square (1/m), and with the speed alone (1/s).
     kind("nose_drag", &["drag_asymmetry"], 0.004, 0.015),
-    kind("nose_speed", &["drag_asymmetry"], 0.004, 0.015),
+    kind("nose_linear", &["drag_asymmetry"], 0.04, 0.15),
     // Drag of each axis by itself, as a share: of the flat plane and the vertical alone, and the faster the more.
     kind("axis_round", &["axis_drag"], 0.4, 1.0),
     kind("axis_fast", &["axis_drag"], 0.6, 1.4),
@@ -61,7 +61,7 @@ pub const KINDS: &[Kind] = &[
     // Filters and delays on the way, s.
     kind("throttle_filter", &["thrust_delay"], 0.006, 0.02),
     kind("throttle_link", &["thrust_delay"], 0.008, 0.025),
-    kind("link_jitter", &["rate_delay", "thrust_delay", "command_dropout"], 0.008, 0.03),
+    kind("link_jitter", &["link_delay", "rate_delay", "thrust_delay", "command_dropout"], 0.008, 0.03),
     kind("stick_filter", &["rate_delay", "rate_second_order"], 0.004, 0.012),
     // Curves of the sticks.
     kind("super_rate", &["rate_expo"], 0.25, 0.6),
@@ -103,6 +103,10 @@ pub const KINDS: &[Kind] = &[
     kind("tired_motor", &["weak_motor"], 0.08, 0.2),
 ];
 
+/// Forms that were here until the catalogue had them: a plate above in climbs alone, and a nose in the whole flow (1/m).
+pub const KNOWN: &[Kind] =
+    &[kind("climb_drag", &["vertical_drag"], 0.02, 0.06), kind("nose_speed", &["drag_asymmetry"], 0.004, 0.015)];
+
 /// What the catalogue has no name for: thrust that breaks (share), a frame that rings with the throttle (m/s2), a fan
 /// (m/s).
 pub const OUTSIDE: &[Kind] =
@@ -114,7 +118,7 @@ pub const OUTSIDE: &[Kind] =
 ///
 /// Where there is no such cause.
 pub fn draw(id: &str, scale: f64, rng: &mut StdRng) -> Hidden {
-    let all = || KINDS.iter().chain(OUTSIDE);
+    let all = || KINDS.iter().chain(OUTSIDE).chain(KNOWN);
     let kind = all().find(|kind| kind.id == id).unwrap_or_else(|| panic!("no cause `{id}`"));
     let size = scale * log_range(rng, kind.range[0], kind.range[1]);
     Hidden::beyond(id, size, kind.right, &[])
