@@ -92,7 +92,7 @@ struct ChannelDocument {
 /// Reads, predicts, writes, prints.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let out = args.out.as_deref().map(output).transpose()?;
-    let vehicles = args.vehicles.iter().map(|name| Vehicle::load(name)).collect::<std::result::Result<Vec<_>, _>>()?;
+    let vehicles = vehicles(&args.vehicles)?;
     let options = options(args)?;
     let bar = progress::bar();
     let checked = logs::read(&args.logs, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
@@ -112,6 +112,18 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         tell(&format!("signals in {}", file.write(&bytes)?.display()));
     }
     Ok(if damaged { CommandEnd::Damaged } else { CommandEnd::Done })
+}
+
+/// The vehicles, by what they were asked for where two have one name: an extended one has its base's.
+fn vehicles(asked: &[String]) -> Result<Vec<Vehicle>> {
+    let mut all = asked.iter().map(|name| Vehicle::load(name)).collect::<std::result::Result<Vec<_>, _>>()?;
+    let names: Vec<String> = all.iter().map(|vehicle| vehicle.name.clone()).collect();
+    for (vehicle, asked) in all.iter_mut().zip(asked) {
+        if names.iter().filter(|name| **name == vehicle.name).count() > 1 {
+            vehicle.name.clone_from(asked);
+        }
+    }
+    Ok(all)
 }
 
 fn options(args: &Args) -> std::result::Result<PredictOptions, BadInput> {

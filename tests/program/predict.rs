@@ -44,6 +44,9 @@ fn a_prediction_and_its_files() {
     let header: Vec<String> = reader.headers().unwrap().iter().map(String::from).collect();
     let expected = "log,time_s,channel,unit,measured,predicted,residual,predicted_2,residual_2";
     assert_eq!(header.join(","), expected);
+    std::fs::copy("configs/vehicles/seed_class.toml", folder.path().join("other.toml")).unwrap();
+    let one_name = json(&run("predict flight.mcap --vehicle seed_class --vehicle other.toml --json").out);
+    assert_eq!(one_name["vehicles"], serde_json::json!(["seed_class", "other.toml"]));
     let (mut squares, mut n) = (0.0, 0.0);
     for row in reader.records().map(Result::unwrap).filter(|row| &row[2] == "roll rate") {
         let number = |k: usize| row[k].parse::<f64>().unwrap();

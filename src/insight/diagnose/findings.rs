@@ -38,7 +38,12 @@ pub fn find(fitted: &FittedSelection, lost: Option<Lost>, structure: &[Structure
         let forces = structure.iter().filter(|s| s.channel.starts_with("specific force")).map(|s| s.structure_rms);
         findings.extend(gusts::find(fitted.problem, fitted.selection, forces.fold(0.0, f64::max)));
     }
-    let (drift, cause) = drift::find(fitted);
+    // Commands that get lost are outliers, and the fit hears those that arrive: their mean delay would be taken twice.
+    let heard = lost.map(|_| fitted.selection.but(fitted.problem, &ids(Role::CommandsLost)));
+    let (drift, cause) = match &heard {
+        Some(heard) => drift::find(&FittedSelection::new(fitted.problem, heard)),
+        None => drift::find(fitted),
+    };
     findings.extend(cause);
     let unexplained = adequacy::unexplained(structure, &findings, fitted.selection);
     let mut found = Judgement { findings, judged, drift, unexplained, small };
@@ -128,6 +133,10 @@ fn matters(judged: &Judged) -> bool {
     };
     let constant = finding.has(Role::ConstantError);
     (judged.material || constant) && (finding.impact >= least || finding.has(Role::CommandsLost))
+}
+
+fn ids(role: Role) -> Vec<&'static str> {
+    effects::acting(role).map(|card| card.id).collect()
 }
 
 /// Lost commands, as counted.

@@ -126,7 +126,8 @@ impl Remaining {
 }
 
 /// Effects of the selection that are no part of the extended vehicle's fit: what is suspected, and of the simulator's
-/// whatever is not named, such as what is too small to matter. What the sensors are off by stays with the flights.
+/// whatever is not named, such as what is too small to matter. What the sensors are off by stays with the flights. Lost
+/// commands are outliers: the fit hears those that arrive, and no mean delay of the others.
 fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
     let of = |f: &&Finding, card: &Card| f.cards().any(|(own, _)| own.id == card.id);
     let status = |card: &Card| findings.iter().find(|f| of(f, card)).map(|f| f.status);
@@ -134,7 +135,8 @@ fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
         Some(status) => status == Status::Suspected,
         None => MODEL.iter().any(|of_vehicle| of_vehicle.id == card.id),
     };
-    selection.added.iter().map(|a| a.card).filter(out).map(|card| card.id).collect()
+    let unheard = |card: &&'static Card| card.role == Role::CommandsLost || out(card);
+    selection.added.iter().map(|a| a.card).filter(unheard).map(|card| card.id).collect()
 }
 
 /// Sizes in the report are those of the extended vehicle. Lost commands are counted, and not fitted.
