@@ -140,6 +140,24 @@ fn swapped_signs_and_frames_are_problems() {
     assert_eq!(finding.stream, "odometry");
 }
 
+/// An attitude whose heading shows more noise than turns is right on average, and one that turns the other way is not.
+#[test]
+fn noise_of_the_heading_is_no_wrong_frame() {
+    let noisy = |sign: f64| {
+        let mut log = good();
+        for (i, row) in log.odometry.rows.iter_mut().enumerate() {
+            let q = nalgebra::Quaternion::new(row[3], row[4], row[5], row[6]);
+            let (roll, pitch, yaw) = nalgebra::UnitQuaternion::from_quaternion(q).euler_angles();
+            let off = 0.3 * (i as f64 * 2.399).sin();
+            let turned = nalgebra::UnitQuaternion::from_euler_angles(roll, pitch, sign * yaw + off);
+            row[3..7].copy_from_slice(&[turned.w, turned.i, turned.j, turned.k]);
+        }
+        check(&log)
+    };
+    let wrong = |quality: &Quality| quality.findings.iter().any(|f| f.kind == "frame" && f.what.contains("yaw"));
+    assert!(!wrong(&noisy(1.0)) && wrong(&noisy(-1.0)));
+}
+
 #[test]
 fn what_is_missing_cannot_be_told() {
     let why = |log: &Log, name: &str| check(log).why_not(name).unwrap_or_else(|| panic!("{name} is told"));

@@ -28,6 +28,8 @@ criteria! {
     ATTITUDE_TURN_RAD = 0.05, Assumed("above the noise of estimated attitudes");
     /// Correlation of attitude and gyro below which a frame is wrong.
     ATTITUDE_CORRELATION = 0.3, Assumed("a held, smoothed or noisy attitude still agrees in sign");
+    /// Share of the gyro's turns that the attitude has on average, below which it is.
+    ATTITUDE_SHARE = 0.5, Assumed("a right one has all of them, however noisy; a wrong axis or sign none");
     /// Mean of the upright specific force, as a share off gravity, that is a wrong frame.
     GRAVITY_SHARE = 0.25, Assumed("climbs and descents average out to less");
     /// Fastest speed below which velocity and position are not compared, m/s.

@@ -2,13 +2,13 @@
 
 use super::offset::{integrals, integrated, turns};
 use super::{LogFinding, Severity};
-use crate::base::stats::{correlation, mean, median};
+use crate::base::stats::{correlation, mean, median, sd};
 use crate::flight::Log;
 use crate::flight::series::{held, period};
 use crate::flight::spans::{Span, contain};
 use crate::insight::criteria::consistent::{
-    ATTITUDE_CORRELATION, ATTITUDE_TURN_RAD, FRAME_SAMPLES, GRAVITY_SHARE, SIGN_CORRELATION, SWAPPED_CORRELATION,
-    SWAPPED_OWN, UPRIGHT_SHARE, VELOCITY_CORRELATION, VELOCITY_SAMPLES, VELOCITY_SPEED_M_S,
+    ATTITUDE_CORRELATION, ATTITUDE_SHARE, ATTITUDE_TURN_RAD, FRAME_SAMPLES, GRAVITY_SHARE, SIGN_CORRELATION,
+    SWAPPED_CORRELATION, SWAPPED_OWN, UPRIGHT_SHARE, VELOCITY_CORRELATION, VELOCITY_SAMPLES, VELOCITY_SPEED_M_S,
 };
 use crate::model::attitude::body_axes;
 use crate::model::constants::GRAVITY_M_S2;
@@ -89,9 +89,12 @@ fn attitude(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
             .map(|i| (turns.measured[i][k], gyro[i]))
             .unzip();
         let agreement = correlation(&x, &y);
-        // Little turning tells nothing; a held, smoothed or noisy attitude still agrees in sign.
+        // Little turning tells nothing; a held, smoothed or noisy attitude still agrees in sign, and where it shows more
+        // noise than turns, still has the gyro's on average.
         let turning = y.iter().map(|y| y.abs()).fold(0.0, f64::max) > ATTITUDE_TURN_RAD.get();
-        if x.len() > FRAME_SAMPLES.count() && turning && agreement < ATTITUDE_CORRELATION.get() {
+        let share = agreement * sd(&x).unwrap_or(0.0) / sd(&y).unwrap_or(0.0).max(1e-300);
+        let wrong = agreement < ATTITUDE_CORRELATION.get() && share < ATTITUDE_SHARE.get();
+        if x.len() > FRAME_SAMPLES.count() && turning && wrong {
             let what = format!("the attitude does not turn in {axis} as the gyro does (correlation {agreement:.2})");
             let so = "check the frames (FLU or FRD, ENU or NED) and the order of the quaternion in a mapping";
             problem("frame", "odometry", what, so, findings);
