@@ -176,25 +176,25 @@ def rotorpy_diagnosis():
     return table(head, body)
 
 
-def other_builds():
-    """The third truth's logs of 100 s by seed and build, of those that flew at least 40, in the order they were flown."""
+def other_builds(seconds="100"):
+    """The third truth's logs of so many seconds by seed and build, of those that flew at least 40, as they were flown."""
     builds = {}
-    for r in rows("other-truth", flight_s="100"):
+    for r in rows("other-truth", flight_s=seconds):
         builds.setdefault((r["seed"], r["build"]), []).append(r)
     return {key: of for key, of in builds.items() if len(of) >= 40}
 
 
-def other_latest():
+def other_latest(seconds="100"):
     """Those of the latest seed."""
-    return list(other_builds().values())[-1]
+    return list(other_builds(seconds).values())[-1]
 
 
-def other_truth():
-    """The third truth's logs of 100 s, by seed and build."""
+def other_truth(seconds="100"):
+    """The third truth's logs of so many seconds, by seed and build."""
     share = lambda of, said: wilson(sum(map(said, of)), len(of)).replace(" %)", ")").replace(" of ", "/") if of else "-"
     right = lambda r: r["first_right"] == "1"
     body = []
-    for (seed, build), of in other_builds().items():
+    for (seed, build), of in other_builds(seconds).items():
         hidden = [r for r in of if r["group"] in ("one", "two")]
         clean = [r for r in of if r["group"] == "none"]
         told = [r for r in hidden if r["nameable"] == "1"]
@@ -229,9 +229,9 @@ def soak():
     return table(["", "resident memory, MiB, median", "most"], body)
 
 
-def other_groups():
-    """The latest logs of the third truth, by what is hidden."""
-    of = other_latest()
+def other_groups(seconds="100"):
+    """The latest logs of the third truth of so many seconds, by what is hidden."""
+    of = other_latest(seconds)
     is_in = lambda *groups: [r for r in of if r["group"] in groups]
     share = lambda which, said: wilson(sum(map(said, which)), len(which)) if which else "-"
     right = lambda r: r["first_right"] == "1"
@@ -251,9 +251,9 @@ def other_groups():
     return table(["hidden", "logs", "", "of them"], body)
 
 
-def other_extended():
+def other_extended(seconds="100"):
     """Their extended vehicles: trained for a moment, and held against another flight."""
-    of = other_latest()
+    of = other_latest(seconds)
     written = [r for r in of if r["extended"] == "1"]
     why = {}
     for r in of:

@@ -59,6 +59,9 @@ impl Judgement {
             let bounded = self.judged.iter().any(|j| j.bounded && j.finding.effect == finding.effect);
             if let Some(why) = adequacy::doubt(finding, bounded, &all, structure, &self.unexplained) {
                 finding.suspect(why);
+            } else if bounded {
+                // What ends at the bound of its range stands in for something else.
+                or_rivals(finding, &all);
             }
         }
         for finding in self.findings.iter_mut().filter(|f| placed && f.has(Role::UniformWind)) {
@@ -92,15 +95,20 @@ fn or_parts(finding: &mut Finding) {
     }
 }
 
-/// Where structure is left in what a finding explains most of, its form is not quite right, and it may be a rival that
-/// writes the same, of which the form is not either.
+/// Where structure is left in what a finding explains most of, its form is not quite right, and it may be a rival, of
+/// which the form is not either.
 fn open(finding: &mut Finding, all: &[Finding], unexplained: &[Structure]) {
+    if unexplained.iter().any(|s| s.channel == finding.channel) {
+        or_rivals(finding, all);
+    }
+}
+
+/// It may be any of its rivals that write the same and were not found.
+fn or_rivals(finding: &mut Finding, all: &[Finding]) {
     let Some(card) = effects::card(finding.effect) else { return };
     let found = |id: &str| all.iter().any(|f| f.effect == id);
     let same = |id: &&str| effects::card(id).is_some_and(|rival| rival.writes == card.writes);
-    if unexplained.iter().any(|s| s.channel == finding.channel) {
-        card.rivals.iter().copied().filter(same).filter(|id| !found(id)).for_each(|id| finding.or(id));
-    }
+    card.rivals.iter().copied().filter(same).filter(|id| !found(id)).for_each(|id| finding.or(id));
 }
 
 /// Where `channel` still has a memory, of rivals that both explain some of it one has the name: its form is not right,
@@ -172,5 +180,20 @@ mod tests {
         assert_eq!(findings.iter().map(|f| f.effect).collect::<Vec<_>>(), [other.id, b.id]);
         assert_eq!((findings[1].status, &findings[1].members[..]), (Status::NamedSet, &[b.id, a.id][..]));
         assert_eq!(findings[1].cards().map(|(card, _)| card.id).collect::<Vec<_>>(), [b.id, a.id]);
+    }
+
+    #[test]
+    fn what_may_be_a_rival_is_one_of_several() {
+        let same = |a: &Card, b: &Card| a.rivals.contains(&b.id) && a.writes == b.writes;
+        let card = effects::cards().find(|a| effects::cards().any(|b| same(a, b))).expect("one with such a rival");
+        let rivals: Vec<&str> = effects::cards().filter(|b| same(card, b)).map(|b| b.id).collect();
+        let named = || Finding { status: Status::Named, members: vec![card.id], ..Finding::of(card) };
+        let mut alone = named();
+        or_rivals(&mut alone, &[]);
+        assert!(alone.status == Status::NamedSet && rivals.iter().all(|id| alone.members.contains(id)));
+        let mut beside = named();
+        let found: Vec<Finding> = rivals.iter().filter_map(|id| effects::card(id)).map(Finding::of).collect();
+        or_rivals(&mut beside, &found);
+        assert!(beside.status == Status::Named, "those that were found have names of their own");
     }
 }

@@ -16,7 +16,7 @@ impl Effect for OcvCurve {
         writes: &[Quantity::Voltage],
         channels: &[ResidualChannel::Voltage],
         signature: "the voltage without load leaves the line as a cubic over the pack",
-        rivals: &["voltage_sag"],
+        rivals: &["voltage_sag", "voltage_relaxation"],
         manoeuvre: ("one whole pack from full to empty", &["circle", "forward", "backward"]),
         ..Card::BLANK
     };

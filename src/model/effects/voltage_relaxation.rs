@@ -20,7 +20,7 @@ impl Effect for VoltageRelaxation {
         reads: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Voltage],
         signature: "the voltage follows the load of the past seconds and recovers slowly at rest",
-        rivals: &["voltage_sag"],
+        rivals: &["voltage_sag", "ocv_curve"],
         manoeuvre: ("a long pull, then rest", &["punch", "chop", "climb", "descent"]),
         ..Card::BLANK
     };
