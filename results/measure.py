@@ -31,12 +31,16 @@ COMMANDS = {
     "measured": (["logs"], "5 min", "python3 tests/python/measured_flights.py target/release/racer {logs} "
                  "results/measured-flights.csv"),
     "plan": ([], "4 h", f"{BENCH} --plan --n 130 --seed 4 --jobs 2 --csv results/plan.csv"),
-    "matched": ([], "2 h", f"{BENCH} --n 60 --seed 31 --tier matched --jobs 2"),
+    "own": ([], "1 h", f"{BENCH} --tier matched --n 300 --seed 61 --jobs 2 --extended --csv results/own-truth.csv"),
     "unmatched": ([], "0.5 h", f"{BENCH} --n 14 --seed 32 --tier unmatched --jobs 2"),
     "outside": ([], "0.5 h", f"{BENCH} --n 14 --seed 33 --tier outside --jobs 2"),
     "race": ([], "0.5 h", f"{BENCH} --n 12 --seed 34 --tier matched --style race --jobs 2"),
-    "other": ([], "1.5 h", f"{BENCH} --tier other --n 300 --seed 27 --seconds 100 --jobs 2 --extended "
+    "other": ([], "1.5 h", f"{BENCH} --tier other --n 300 --seed 30 --seconds 100 --jobs 2 --extended "
               "--csv results/other-truth.csv"),
+    "other-300s": ([], "3.5 h", f"{BENCH} --tier other --n 300 --seed 31 --seconds 300 --jobs 2 --extended "
+                   "--csv results/other-truth.csv"),
+    "rotorpy-diagnosis": ([], "5 min", "python3 tests/python/rotorpy_diagnosis.py target/release/racer "
+                          "results/rotorpy-diagnosis.csv"),
     "retraining": ([], "0.5 h", "cargo bench --bench retraining -- --effects "
                    "rate_delay=0.06,voltage_sag=4,axial_inflow=1.5 --steps 14000000 --seeds 2 --agents 64"),
     "retraining-by-motor": ([], "0.3 h", "cargo bench --bench retraining -- --by-motor --effects "

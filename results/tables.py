@@ -205,6 +205,29 @@ def other_truth(seconds="100"):
     return table([*head, "those that could show", "unexplained (95 %)"], body)
 
 
+def own_truth():
+    """Logs of our own truth, with effects in the catalogue's forms, by what is hidden."""
+    of = latest("own-truth")
+    is_in = lambda *groups: [r for r in of if r["group"] in groups]
+    hidden, outside, clean = is_in("one", "two"), is_in("outside"), is_in("none", "drift")
+    written = [r for r in of if r["extended"] == "1"]
+    spurious = lambda r: r["spurious"] != ""
+    count = lambda which, said: wilson(sum(map(said, which)), len(which)) if which else "-"
+    body = [
+        ("clean, or the base drifted: a false name", count(clean, spurious), "1 % at most"),
+        ("any log: a name with nothing behind it", count(of, spurious), "1 % at most"),
+        ("one or two causes: a right one first", count(hidden, lambda r: r["first_right"] == "1"), "95 %"),
+        ("two causes: both named or in a set", count(is_in("two"), lambda r: r["found"] == r["of"]), ""),
+        ("outside the catalogue: told to be unexplained", count(outside, lambda r: r["unexplained"] == "1"), "90 %"),
+        ("outside the catalogue: a confident name", count(outside, spurious), ""),
+        ("an extended vehicle is written", count(of, lambda r: r["extended"] == "1"), ""),
+        ("of these: train", count(written, lambda r: r["trains"] == "1"), "all"),
+        ("more than 2 % worse than the base in a signal of another flight",
+         count(written, lambda r: float(r["worst_ratio"]) > 1.02), "none"),
+    ]
+    return table(["", "found", "goal"], body)
+
+
 def retraining():
     """Policies in the third truth, trained in the base vehicle and in the extended one: laps of each seed."""
     cases = {}
@@ -359,8 +382,8 @@ def precision():
     return table(head, body)
 
 
-TABLES = [training, budgets, refinement, tried, loop, rotorpy, rotorpy_diagnosis, other_truth, other_groups, retraining, soak,
-          other_extended, against, plan, blackbox, precision,
+TABLES = [training, budgets, refinement, tried, loop, rotorpy, rotorpy_diagnosis, other_truth, other_groups, own_truth,
+          retraining, soak, other_extended, against, plan, blackbox, precision,
           measured_names, measured_unseen]
 MADE = {f.__name__: f for f in TABLES}
 

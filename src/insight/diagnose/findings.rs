@@ -28,7 +28,7 @@ pub struct Judgement {
 pub fn find(fitted: &FittedSelection, lost: Option<Lost>, structure: &[Structure]) -> Judgement {
     let added = fitted.selection.added.iter().map(|a| judge(fitted, a)).chain(constant_errors(fitted));
     let (judged, small): (Vec<Judged>, Vec<Judged>) = added.partition(matters);
-    let small = small.into_iter().map(|j| j.finding).collect();
+    let small = small.into_iter().map(|j| j.finding).filter(|f| f.status != Status::Suspected).collect();
     let mut findings: Vec<Finding> = judged.iter().map(|j| j.finding.clone()).collect();
     if let Some(lost) = lost {
         findings.iter_mut().filter(|f| f.has(Role::CommandsLost)).for_each(|f| count(f, &lost));
