@@ -392,8 +392,8 @@ fn forces_follow_the_equations() {
         }
     }
 
-    // Forms: drag that grows more, or less, than the speed, and never pushes, or not one way; of the whole flow; lift of
-    // one direction.
+    // Forms: drag that grows more, or less, than the speed, and never pushes, or not one way; of the whole flow; and
+    // lift of one direction.
     for (id, k, axis, want) in [
         ("vertical_drag", &[0.2, 0.04, 0.0][..], 2, -(0.2 - 0.04) * vz),
         ("vertical_drag", &[0.02, 0.04, 0.0], 2, 0.0),

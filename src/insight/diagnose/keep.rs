@@ -8,19 +8,20 @@ use super::own_numbers::{like, own, unpaid};
 use super::problem::Problem;
 use super::replication::stretches;
 use super::select::Selection;
-use super::worse::{self, Reference, Than, Worse};
+use super::worse::{self, Than, Unextended, Worse};
 use super::{extend, shown};
 use crate::base::check::Check;
 use crate::model::effects::{self, Card, EffectKind, MODEL, Role};
 
 /// More than any share by which a part is worse.
 const OVER_ALL: f64 = 1e6;
+const UNSEEN: &str = "on flight that was not used for fitting it";
 
 /// What of the selection is kept: what is only suspected is no part of the extended vehicle, nor what is not sure
 /// without that, nor what makes unseen flight worse where what is left does not. With the reason why it is worse, even
 /// than the vehicle that was given, where nothing helps: then every name stands as it did.
 pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) -> (Selection, Option<String>) {
-    let reference = Reference::new(problem, selection);
+    let reference = Unextended::new(problem, selection);
     let caused = with_cause(&reference, selection, findings);
     let selection = caused.as_ref().unwrap_or(selection);
     let mut given: Vec<usize> = Vec::new();
@@ -50,13 +51,12 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
             given = group;
             continue;
         }
-        let unseen = "on flight that was not used for fitting it";
         let rise = kept.worse.as_ref().map(|worse| format!("{} {:.0} % worse", worse.channel, 100.0 * worse.by));
         let blamed = |f: &&mut Finding| match &kept.worse {
             Some(worse) => worse.blamed.is_some_and(|card| card.id == f.effect),
             None => effects::card(f.effect).is_some_and(|card| card.kind == EffectKind::Battery),
         };
-        let why = rise.as_ref().map(|rise| format!("{unseen} predicts {rise}"));
+        let why = rise.as_ref().map(|rise| format!("{UNSEEN} predicts {rise}"));
         let as_they_were = findings.to_vec();
         // What only comes nearer to a form goes before the name does.
         let whose =
@@ -75,14 +75,14 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
         };
         before_blame.get_or_insert((kept.selection, why, as_they_were));
         finding.suspect(match rise {
-            Some(rise) => format!("{unseen} makes {rise}"),
+            Some(rise) => format!("{UNSEEN} makes {rise}"),
             None => "at rest the pack would be above the voltages that the thrust is told at".into(),
         });
     }
 }
 
 /// The selection with the named cause of all moves of thrust and drag in their place, where that is no worse.
-fn with_cause(reference: &Reference, selection: &Selection, findings: &mut [Finding]) -> Option<Selection> {
+fn with_cause(reference: &Unextended, selection: &Selection, findings: &mut [Finding]) -> Option<Selection> {
     let cause = named(findings).find(|f| f.explained.contains_key(MOVES))?;
     let card = effects::card(cause.effect)?;
     let caused = selection.with_cause(reference.problem, card, cause.parameters.get(card.parameters[0].name)?.value);
@@ -99,12 +99,12 @@ struct Remaining {
 
 impl Remaining {
     /// With the numbers `given` as the base vehicle has them.
-    fn of(reference: &Reference, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
+    fn of(reference: &Unextended, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
         Self::than(Than::Either, reference, selection, findings, given)
     }
 
     /// The same held against `than`.
-    fn than(than: Than, reference: &Reference, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
+    fn than(than: Than, reference: &Unextended, selection: &Selection, findings: &[Finding], given: &[usize]) -> Self {
         let problem = reference.problem;
         let kept = selection.without(problem, &left_out(selection, findings)).with_given(problem, given);
         let worse = worse::find(&FittedSelection::new(problem, &kept), reference, than);

@@ -42,7 +42,7 @@ type Squares = Vec<Vec<f64>>;
 
 /// What flights are without an extended model on unseen flight: as the vehicle that was given predicts them, and as the
 /// compact model that is fitted to them does.
-pub struct Reference<'a> {
+pub struct Unextended<'a> {
     pub problem: &'a Problem,
     given: Squares,
     compact: Squares,
@@ -50,7 +50,7 @@ pub struct Reference<'a> {
     flies: bool,
 }
 
-impl<'a> Reference<'a> {
+impl<'a> Unextended<'a> {
     pub fn new(problem: &'a Problem, selection: &Selection) -> Self {
         let (whitener, compact) = (&selection.whitener, &selection.base);
         // Errors of the sensors and the voltage at the beginning are the flight's, not the vehicle's.
@@ -105,7 +105,7 @@ fn add(problem: &Problem, sums: &mut Squares, residual: &ChannelValues, out: &[b
 }
 
 /// The channel that the extended model of `fitted` predicts worst, if it predicts any worse `than` the `reference`.
-pub fn find(fitted: &FittedSelection, reference: &Reference, than: Than) -> Option<Worse> {
+pub fn find(fitted: &FittedSelection, reference: &Unextended, than: Than) -> Option<Worse> {
     let problem = fitted.problem;
     let extended = on_unseen(problem, &fitted.selection.whitener, fitted.point(), &fitted.grams);
     // All unseen flight, then each part: what pays in two thirds may fail in the third.

@@ -89,8 +89,8 @@ fn attitude(log: &Log, usable: &[Span], findings: &mut Vec<LogFinding>) {
             .map(|i| (turns.measured[i][k], gyro[i]))
             .unzip();
         let agreement = correlation(&x, &y);
-        // Little turning tells nothing; a held, smoothed or noisy attitude still agrees in sign, and where it shows more
-        // noise than turns, still has the gyro's on average.
+        // Little turning tells nothing; a held or smoothed attitude still agrees in sign, and one with more noise than
+        // turns has the gyro's on average.
         let turning = y.iter().map(|y| y.abs()).fold(0.0, f64::max) > ATTITUDE_TURN_RAD.get();
         let share = agreement * sd(&x).unwrap_or(0.0) / sd(&y).unwrap_or(0.0).max(1e-300);
         let wrong = agreement < ATTITUDE_CORRELATION.get() && share < ATTITUDE_SHARE.get();

@@ -103,7 +103,7 @@ pub const KINDS: &[Kind] = &[
     kind("tired_motor", &["weak_motor"], 0.08, 0.2),
 ];
 
-/// Forms that were here until the catalogue had them: a plate above in climbs alone, and a nose in the whole flow (1/m).
+/// Forms that were here until the catalogue had them: a plate above in climbs alone, a nose in the whole flow (1/m).
 pub const KNOWN: &[Kind] =
     &[kind("climb_drag", &["vertical_drag"], 0.02, 0.06), kind("nose_speed", &["drag_asymmetry"], 0.004, 0.015)];
 
