@@ -274,6 +274,10 @@ def other_groups(seconds="100"):
     return table(["hidden", "logs", "", "of them"], body)
 
 
+# Why a log has no line on its vehicle: the program answered, or refused the log.
+NOT_ASKED = ["nothing is named", "the log was refused"]
+
+
 def other_extended(seconds="100"):
     """Their extended vehicles: trained for a moment, and held against another flight."""
     of = other_latest(seconds)
@@ -281,7 +285,7 @@ def other_extended(seconds="100"):
     why = {}
     for r in of:
         if r["extended"] != "1":
-            why.setdefault(re.sub(r" \d+ %", " some", r["extended"]) or "nothing is named", []).append(r)
+            why.setdefault(re.sub(r" \d+ %", " some", r["extended"]) or NOT_ASKED[r["verdict"].startswith("FAILED")], []).append(r)
     worse = lambda by: sum(float(r["worst_ratio"]) > 1 + by for r in written)
     body = [
         ("written", wilson(len(written), len(of))),

@@ -37,6 +37,13 @@ impl FitPoint {
     pub fn total(&self) -> f64 {
         self.cost.iter().sum()
     }
+
+    /// Inner products of the columns of the fitted numbers and of what is left, the last, by stretch of time.
+    pub fn grams(&self, problem: &Problem, whitener: &Whitener) -> Grams {
+        let residual = whitener.apply(&self.residual, &problem.rows);
+        let columns: Vec<&ChannelValues> = self.white.iter().chain([&residual]).collect();
+        Grams::new(&columns, &problem.rows, problem.blocks)
+    }
 }
 
 /// Whitened squares by stretch of time.
@@ -213,9 +220,7 @@ const GROUPS: usize = 20;
 /// out longer ones says so.
 pub fn covariance(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> Option<DMatrix<f64>> {
     let n = point.free.len();
-    let residual = whitener.apply(&point.residual, &problem.rows);
-    let columns: Vec<&ChannelValues> = point.white.iter().chain([&residual]).collect();
-    let grams = Grams::new(&columns, &problem.rows, problem.blocks);
+    let grams = point.grams(problem, whitener);
     let prior = prior(problem, &point.free);
     let own: Vec<usize> = (0..n).collect();
     let (single, _) = jackknife(&grams, &own, n, &prior, 1)?;

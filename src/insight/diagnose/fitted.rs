@@ -2,7 +2,7 @@
 
 use super::fit::{FitPoint, covariance};
 use super::numbers::span;
-use super::problem::{ChannelValues, Problem};
+use super::problem::Problem;
 use super::select::Selection;
 use crate::insight::estimate::gram::Grams;
 use crate::model::effects::Card;
@@ -21,9 +21,7 @@ pub struct FittedSelection<'a> {
 impl<'a> FittedSelection<'a> {
     pub fn new(problem: &'a Problem, selection: &'a Selection) -> Self {
         let point = &selection.point;
-        let residual = selection.whitener.apply(&point.residual, &problem.rows);
-        let columns: Vec<&ChannelValues> = point.white.iter().chain([&residual]).collect();
-        let grams = Grams::new(&columns, &problem.rows, problem.blocks);
+        let grams = point.grams(problem, &selection.whitener);
         let n = point.free.len();
         let covariance = covariance(problem, &selection.whitener, point).unwrap_or(DMatrix::zeros(n, n));
         Self { problem, selection, covariance, grams }

@@ -59,7 +59,7 @@ impl<'a> Unextended<'a> {
         x[..LOG_AT].copy_from_slice(&problem.model.base[..LOG_AT]);
         let given = fit(problem, whitener, &x, &of_flight);
         let flies = problem.model.vehicle_at(&compact.x).check().is_ok();
-        let on_unseen = |point: &FitPoint| on_unseen(problem, whitener, point, &grams(problem, whitener, point));
+        let on_unseen = |point: &FitPoint| on_unseen(problem, whitener, point, &point.grams(problem, whitener));
         Self { problem, given: on_unseen(&given), compact: on_unseen(compact), flies }
     }
 
@@ -69,13 +69,6 @@ impl<'a> Unextended<'a> {
         let compact = than == Than::Either && self.flies && total(&self.compact) <= total(&self.given);
         if compact { &self.compact[c] } else { &self.given[c] }
     }
-}
-
-/// Inner products of what is linear about `point`, by stretch of time.
-fn grams(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> Grams {
-    let white = whitener.apply(&point.residual, &problem.rows);
-    let columns: Vec<&ChannelValues> = point.white.iter().chain([&white]).collect();
-    Grams::new(&columns, &problem.rows, problem.blocks)
 }
 
 /// What `point` leaves in each part, fitted to the others.
