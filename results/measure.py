@@ -28,6 +28,10 @@ COMMANDS = {
     "against": ([], "1.5 h", f"{BENCH} --against --n 100 --seconds 60 --seed 13 --jobs 2 --csv results/against.csv"),
     "against-120s": ([], "2 h", f"{BENCH} --against --n 100 --seconds 120 --seed 14 --jobs 2 "
                      "--csv results/against-120s.csv"),
+    "against-seed15": ([], "1.5 h", f"{BENCH} --against --n 100 --seconds 60 --seed 15 --jobs 2 "
+                       "--csv results/against-seed15.csv"),
+    "against-seed16": ([], "0.5 h", f"{BENCH} --against --n 40 --seconds 60 --seed 16 --jobs 2 "
+                       "--csv results/against-seed16.csv"),
     "measured": (["logs"], "5 min", "python3 tests/python/measured_flights.py target/release/racer {logs} "
                  "results/measured-flights.csv"),
     "plan": ([], "4 h", f"{BENCH} --plan --n 130 --seed 4 --jobs 2 --csv results/plan.csv"),

@@ -318,9 +318,9 @@ def judgement(pair):
     named = ":named" in pair["said"]
     if not pair["changed"]:
         return "WRONG" if named else "right"
-    if pair["first_right"] == "1" or pair["could_not_show"] == "1":
-        return "right" if pair["first_right"] == "1" else "could not show"
-    return "WRONG FIRST" if named else "MISSED"
+    if named:
+        return "right" if pair["first_right"] == "1" else "WRONG FIRST"
+    return "could not show" if pair["could_not_show"] == "1" else "MISSED"
 
 
 def against(file="against"):
