@@ -3,6 +3,7 @@
 use crate::truth::Vehicle;
 use crate::truth::effects::Hidden;
 use crate::truth::hidden::{Setting, Style, fly};
+use crate::truth::other::{self, Airframe};
 use racer::flight::Log;
 use racer::insight::diagnose::against::{Changes, compare};
 use racer::insight::quality::check;
@@ -69,4 +70,28 @@ fn thrust_that_is_less_is_named_as_such() {
     let thrust = changes.changes[0].difference.values().next().expect("a size");
     let before = changes.changes[0].before.values().next().expect("a size");
     assert!((thrust.value / before.value + 0.1).abs() < 0.02, "{thrust:?} of {before:?}");
+}
+
+/// A rate loop with filters and motors that end at full is no compact model: what both flights show of it is larger
+/// than the noise, and no difference.
+#[test]
+fn what_the_model_gets_wrong_of_both_flights_does_not_hide_a_change() {
+    let airframe = Airframe::draw(SEED);
+    let mut slower = airframe.clone();
+    slower.max_rate = slower.max_rate.map(|rate| 0.85 * rate);
+    let flown = |airframe: &Airframe, seed: u64| {
+        let setting = Setting { seed, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
+        check(&other::fly(airframe, &[], &setting))
+    };
+    let vehicle = airframe.nominal().in_racer();
+    let changes = compare(vec![flown(&airframe, 1)], vec![flown(&slower, 2)], &vehicle, &mut |_, _| ());
+    assert_eq!(named(&changes), ["full_stick_rates"]);
+    let change = &changes.changes[0];
+    for axis in ["roll", "pitch"] {
+        let name = format!("max_rate_deg_s.{axis}");
+        let share = change.difference[&name].value / change.before[&name].value;
+        assert!((share + 0.15).abs() < 0.02, "{axis}: {share}");
+    }
+    let same = compare(vec![flown(&airframe, 1)], vec![flown(&airframe, 2)], &vehicle, &mut |_, _| ());
+    assert!(!same.changed, "{:?}", named(&same));
 }

@@ -9,6 +9,8 @@ criteria! {
 CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were the stretches of time independent");
     /// Standard deviations from which one number of a difference is asked whether it pays on unseen flight.
     KNOWN_DEVIATIONS = 2.0, Theory("one in forty by chance");
+    /// Share of the squared standard deviations of a difference that such numbers have to hold.
+    KNOWN_SHARE = 0.5, Assumed("a lift forwards and one across: 36 deviations together, 2 and 1 each by itself");
     /// Standard deviations between flights of one set that a difference of the sets has to be.
     BETWEEN_DEVIATIONS = 3.0, Assumed("two or three flights tell their spread badly");
     /// Share of a difference that every third of the time has to show.
@@ -31,6 +33,10 @@ CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were th
     CHANGED_BIAS = 4.0, Assumed("it is another after every switching on");
     /// Share of the best gain from which a number of the compact model is preferred to an effect that is tied with it.
     PLAIN_SHARE = 0.9, Assumed("slower gains did 0.95 of what a response that slows with the voltage did");
-    /// Differences that are tried at most.
+    /// Squared standard deviations over stretches of time from which a difference is worth a fit.
+    CHANGED_EVIDENCE = 4.5, Assumed("that of an effect; more would ask for more stretches than some causes show in");
+    /// Differences that are found at most.
     MOST_CHANGES = 5.0, Assumed("more is another vehicle");
+    /// Differences that are tried at most, those that do not hold included.
+    MOST_TRIED = 10.0, Assumed("what does not hold takes no place of what does");
 }

@@ -5,8 +5,10 @@
 //! differences beside the same cause in both sets ([`columns`]), the best are fitted ([`search`]) and judged
 //! ([`judge`]). What the model gets wrong of both sets alike is no difference.
 
+mod alike;
 mod change;
 mod columns;
+mod flown;
 mod judge;
 mod motor;
 mod search;
@@ -18,6 +20,7 @@ use super::contrast::Contrast;
 use super::finding::{Diagnosis, Status};
 use super::fitted::FittedSelection;
 use super::problem::Problem;
+use super::select::Selection;
 use super::shown;
 use super::size::is_material;
 use crate::insight::Watch;
@@ -37,12 +40,16 @@ pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, wat
     let contrasted = |logs| {
         let mut problem = super::problem(logs, vehicle);
         problem.contrast = Some(Contrast::new(&mut problem.model, later.clone()));
+        // That a late gyro undoes what moved the odometry to it would be a jump between one set and the other; each
+        // set's odometry is moved in every fit anyway.
+        problem.records.iter_mut().for_each(|record| record.moved = 0.0);
         problem
     };
     let (problem, selection, left_out) =
         accident::select_steady(all, contrasted, &mut |step, share| watch(step, 0.5 * share));
     let suspects = suspect::known(&problem);
     watch("comparing", 0.5);
+    let selection = Selection { whitener: alike::deaf(&problem, &selection), ..selection };
     let search = DifferenceSearch::new(&problem, &suspects, selection).run();
     let would_show = would_show(&problem, &search.tested, &suspects);
     Changes { would_show, left_out, ..changes(&problem, &suspects, &search) }
@@ -76,12 +83,15 @@ fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch) -
         changes.retain(|c| c.cause != motor.cause);
         changes.push(motor);
     }
-    // Constant errors of sensors are others after every switching on: what the vehicle does comes first.
-    let constant = |c: &Change| effects::card(c.cause).is_some_and(|card| card.role == Role::ConstantError);
+    // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first. So
+    // does what is told from all others.
+    let own = [Role::ConstantError, Role::ClockFast];
+    let constant = |c: &Change| effects::card(c.cause).is_some_and(|card| own.contains(&card.role));
     let place = |c: &Change| match c.status {
         Status::Suspected => 0.0,
         _ if constant(c) => 1e9,
-        _ => 2e9,
+        Status::NamedSet => 2e9,
+        Status::Named => 3e9,
     };
     let rank = |c: &Change| c.deviations + place(c);
     changes.sort_by(|a, b| rank(b).total_cmp(&rank(a)));

@@ -88,6 +88,17 @@ impl Problem {
         self.records.iter().scan(0.0, after).collect()
     }
 
+    /// Of each set of flights, which stretches of time are not of it; one set where there is no contrast.
+    pub fn sets(&self) -> Vec<Vec<bool>> {
+        let Some(contrast) = &self.contrast else { return vec![vec![false; self.blocks]] };
+        let mut later = vec![false; self.blocks];
+        for (record, is_later) in self.records.iter().zip(&contrast.later) {
+            record.block.iter().for_each(|b| later[*b as usize] = *is_later);
+        }
+        let earlier = later.iter().map(|l| !l).collect();
+        vec![later, earlier]
+    }
+
     /// The numbers of flight `f` at `x`.
     pub fn numbers<'a>(&self, f: usize, x: &'a [f64]) -> Cow<'a, [f64]> {
         self.contrast.as_ref().map_or(x.into(), |contrast| contrast.numbers(&self.model, f, x))

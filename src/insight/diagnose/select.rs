@@ -10,6 +10,7 @@ use super::rank::{Reach, rank};
 use super::size::is_material;
 use super::told::told;
 use super::trial::{Trial, tied, try_best, try_these};
+use super::unseen::seen;
 use super::whiten::Whitener;
 use crate::insight::criteria::consistent::CLOCK_SKEW_SEEN;
 use crate::insight::criteria::evident::{LEAST_GAIN, MOST_EFFECTS, MOST_RATE_EFFECTS, NUISANCE_GAIN};
@@ -249,27 +250,41 @@ fn best<'a>(problem: &Problem, trials: &'a [Trial]) -> Option<&'a Trial> {
 
 /// The whitener of what is left when all columns are taken off.
 fn saturated(problem: &Problem, whitener: &Whitener, point: &FitPoint, found: &[Candidate]) -> Whitener {
+    left_over(problem, whitener, point, found).map_or(whitener.clone(), |left| Whitener::of(&left, &problem.rows))
+}
+
+/// What is left when all columns are taken off, of each set of flights by itself: a difference between them is no noise.
+pub fn left_over(
+    problem: &Problem,
+    whitener: &Whitener,
+    point: &FitPoint,
+    found: &[Candidate],
+) -> Option<ChannelValues> {
     let residual = whitener.apply(&point.residual, &problem.rows);
     let all: Vec<&ChannelValues> =
         point.white.iter().chain(found.iter().map(|c| &c.white)).chain([&residual]).collect();
     let grams = Grams::new(&all, &problem.rows, problem.blocks);
-    let Some((beta, _)) = together(&grams) else { return whitener.clone() };
+    let sets = problem.sets();
+    let each: Vec<DMatrix<f64>> = sets.iter().map(|out| together(&seen(&grams, out))).collect::<Option<_>>()?;
     let mut left = point.residual.clone();
     let raw: Vec<ChannelValues> = point.free.par_iter().map(|&k| problem.slope(&point.state, &point.x, k)).collect();
     for (j, column) in raw.iter().chain(found.iter().map(|c| &c.change)).enumerate() {
-        for (left, column) in left.iter_mut().zip(column) {
-            left.iter_mut().zip(column).for_each(|(l, x)| *l -= beta[(j, 0)] * x);
+        for (c, column) in column.iter().enumerate() {
+            for ((left, x), row) in left[c].iter_mut().zip(column).zip(&problem.rows[c]) {
+                let set = sets.iter().position(|out| !out[row.block as usize]).unwrap_or(0);
+                *left -= each[set][(j, 0)] * x;
+            }
         }
     }
-    Whitener::of(&left, &problem.rows)
+    Some(left)
 }
 
-/// All columns of `grams` but the last, fitted to the last, and how many they are.
-fn together(grams: &Grams) -> Option<(DMatrix<f64>, usize)> {
-    let n = grams.sum.nrows() - 1;
+/// All columns of the inner products `sum` but the last, fitted to the last.
+fn together(sum: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let n = sum.nrows() - 1;
     let own: Vec<usize> = (0..n).collect();
-    let square = Grams::pick(&grams.sum, &own, &own);
+    let square = Grams::pick(sum, &own, &own);
     // Columns at several sizes of one effect are nearly the same: a small ridge decides among them.
     let ridge: Vec<f64> = (0..n).map(|i| 1e-4 * square[(i, i)] + 1e-12).collect();
-    Some((crate::insight::estimate::inverse::inverse(&square, &ridge)? * Grams::pick(&grams.sum, &own, &[n]), n))
+    Some(crate::insight::estimate::inverse::inverse(&square, &ridge)? * Grams::pick(sum, &own, &[n]))
 }

@@ -75,7 +75,7 @@ fn by_stretch<R: Stretch>(columns: &[&[f64]], rows: &[R], blocks: usize) -> Vec<
 }
 
 /// Eight sums side by side, so that they do not wait for each other.
-fn dot(x: &[f64], y: &[f64]) -> f64 {
+pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (xs, ys) = (x.chunks_exact(8), y.chunks_exact(8));
     let rest: f64 = xs.remainder().iter().zip(ys.remainder()).map(|(a, b)| a * b).sum();

@@ -74,11 +74,8 @@ pub fn tests(
 
 /// Whether each stretch of time is of a later flight.
 pub fn later(problem: &Problem) -> Vec<bool> {
-    let mut out = vec![false; problem.blocks];
-    for (record, later) in problem.records.iter().zip(problem.contrast.iter().flat_map(|c| &c.later)) {
-        record.block.iter().for_each(|b| out[*b as usize] = *later);
-    }
-    out
+    // What is not of the earlier set.
+    problem.sets().swap_remove(0)
 }
 
 /// The score of one test. What both sets show alike comes first among the columns.

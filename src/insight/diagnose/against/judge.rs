@@ -7,7 +7,8 @@ use super::sizes;
 use super::suspect::{FoundDifference, Suspect};
 use crate::base::stats::chi_squared_chance;
 use crate::insight::criteria::changed::{
-    BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_IMPACT, KNOWN_DEVIATIONS, LASTING_KNOWN, LASTING_SHARE,
+    BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_IMPACT, KNOWN_DEVIATIONS, KNOWN_SHARE, LASTING_KNOWN,
+    LASTING_SHARE,
 };
 use crate::insight::criteria::material::{LEAST_SENSOR_IMPACT, MATERIAL_SIZE};
 use crate::insight::criteria::unseen::PAYS_DEVIATIONS;
@@ -80,10 +81,12 @@ fn places(fitted: &FittedSelection, suspect: &Suspect) -> Vec<usize> {
 }
 
 /// Those of the differences at `own` that are known to be any. What the others are without a third of the time is
-/// chance, and would hide what these explain of it.
+/// chance, and would hide what these explain of it. All of them, where they stand in for one another and are known
+/// together alone.
 fn evident(fitted: &FittedSelection, own: Vec<usize>) -> Vec<usize> {
     let known: Vec<usize> = own.iter().copied().filter(|&i| deviations(fitted, i) >= KNOWN_DEVIATIONS.get()).collect();
-    if known.is_empty() { own } else { known }
+    let [part, whole] = [&known, &own].map(|places| chance(fitted, places).0);
+    if known.is_empty() || part < KNOWN_SHARE.get() * whole { own } else { known }
 }
 
 /// Squared standard deviations of the differences at `own`, and the chance of as many.

@@ -6,7 +6,7 @@ use super::change::Change;
 use super::columns::{Tested, tests};
 use super::judge;
 use super::suspect::{FoundDifference, Suspect};
-use crate::insight::criteria::changed::{MOST_CHANGES, PLAIN_SHARE};
+use crate::insight::criteria::changed::{CHANGED_EVIDENCE, MOST_CHANGES, MOST_TRIED, PLAIN_SHARE};
 use crate::insight::criteria::evident::{BOUNDED_MERIT, GAIN_WORTH_A_FIT, LEAST_GAIN, SHORT_LIST};
 use crate::insight::criteria::rival::{RIVAL_KEEPS, TIE_DEVIATIONS};
 use crate::insight::diagnose::candidates::{Candidate, candidates};
@@ -59,12 +59,13 @@ impl<'a> DifferenceSearch<'a> {
 
     /// Adds differences until none is worth it.
     pub fn run(mut self) -> Self {
-        for round in 0..=MOST_CHANGES.count() {
+        let ended = |search: &Self| search.found.len() >= MOST_CHANGES.count();
+        for round in 0..=MOST_TRIED.count() {
             let Selection { point, whitener, .. } = &self.selection;
             let mut order = tests(self.problem, whitener, point, self.suspects, &self.candidates);
             order.sort_by(|a, b| b.score.gain.total_cmp(&a.score.gain));
             self.keep_ties(&order);
-            let ends = round == MOST_CHANGES.count() || !self.add(&order);
+            let ends = round == MOST_TRIED.count() || ended(&self) || !self.add(&order);
             self.tested = order;
             if ends {
                 break;
@@ -90,9 +91,9 @@ impl<'a> DifferenceSearch<'a> {
         tried.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
         let worth = |t: &&Tried| merit(t) >= LEAST_GAIN.get() + self.suspects[t.suspect].own.len() as f64;
         let Some(first) = tried.first().filter(worth) else { return false };
-        // A number of the compact model that does nearly as well is the plainer answer.
-        let plain = |t: &&Tried| self.suspects[t.suspect].card.is_none() && merit(t) > PLAIN_SHARE.get() * merit(first);
-        let best = tried.iter().find(|t| tied(first, t) && plain(t)).unwrap_or(first);
+        // Of those that do nearly as well the plainest is the answer.
+        let nearly = |t: &&Tried| tied(first, t) && merit(t) > PLAIN_SHARE.get() * merit(first);
+        let best = tried.iter().filter(nearly).min_by_key(|t| self.suspects[t.suspect].plainness()).unwrap_or(first);
         let near = tried.iter().filter(|t| t.suspect != best.suspect && tied(best, t));
         let pending = near.map(|t| (t.suspect, t.gain)).collect();
         let (suspect, x, free) = (best.suspect, best.point.x.clone(), best.point.free.clone());
@@ -119,7 +120,8 @@ impl<'a> DifferenceSearch<'a> {
     fn chosen(&self, order: &[Tested]) -> Vec<usize> {
         let mut chosen: Vec<usize> = Vec::new();
         let rejected = |suspect: usize| self.rejected.iter().any(|change| change.cause == self.suspects[suspect].id);
-        for tested in order.iter().filter(|t| t.score.gain > GAIN_WORTH_A_FIT.get() && !rejected(t.suspect)) {
+        let worth = |t: &&Tested| t.score.gain > GAIN_WORTH_A_FIT.get() && t.score.evidence > CHANGED_EVIDENCE.get();
+        for tested in order.iter().filter(worth).filter(|t| !rejected(t.suspect)) {
             let card = |suspect: usize| self.suspects[suspect].card;
             let leader = chosen.first().and_then(|&first| card(first));
             let rival = leader.zip(card(tested.suspect)).is_some_and(|(a, b)| are_rivals(a, b));

@@ -8,7 +8,7 @@ use crate::insight::diagnose::candidates::base_numbers;
 use crate::insight::diagnose::contrast::Contrast;
 use crate::insight::diagnose::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
 use crate::insight::diagnose::problem::Problem;
-use crate::model::effects::{self, Card, CompactNumber, Role};
+use crate::model::effects::{self, Card, CompactNumber, EffectKind, Role};
 use std::ops::Range;
 
 /// Something that may differ.
@@ -132,6 +132,16 @@ impl Suspect {
     pub fn is_absorbed(&self) -> bool {
         let both_ways = |card: &Card| card.parameters[0].low < 0.0;
         self.card.is_some_and(|card| card.absorbed_by.contains(&CompactNumber::Thrust) && both_ways(card))
+    }
+
+    /// How plain an answer it is, 0 the plainest: a number of the compact model, another cause in the vehicle, one in
+    /// its sensors and their clocks.
+    pub fn plainness(&self) -> u8 {
+        match self.card.map(|card| card.kind) {
+            None => 0,
+            Some(EffectKind::Sensor) => 2,
+            Some(_) => 1,
+        }
     }
 
     /// Numbers of the vehicle that have to be known beside the difference.
