@@ -51,7 +51,6 @@ pub mod one_motor;
 pub mod ordinary;
 pub mod oscillation;
 mod own_numbers;
-mod parts;
 pub mod pays;
 pub mod place;
 pub mod predict;

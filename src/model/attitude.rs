@@ -1,6 +1,6 @@
 //! Attitude: unit quaternions (w, x, y, z), body to world.
 
-use crate::base::lane::{Real, each};
+use crate::base::lane::{Real, build, each};
 
 pub type Quaternion<R> = [R; 4];
 
@@ -63,7 +63,7 @@ pub fn normalized<R: Real>(q: Quaternion<R>) -> Quaternion<R> {
 /// A vector of the body, in the world, by the body's axes there.
 #[inline(always)]
 pub fn in_world(axes: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| (0..3).map(|j| axes[j][k] * v[j]).sum())
+    build!(|k| axes[0][k] * v[0] + axes[1][k] * v[1] + axes[2][k] * v[2])
 }
 
 /// The rotation vector of a rotation of at most half a turn, rad; of the two quaternions of a rotation, either will do.

@@ -1,6 +1,5 @@
 //! The IMU's samples at other times than their own: on the odometry's clock, and as a velocity that lags sees them.
 
-use super::parts::{SAMPLES, each_of};
 use super::record::FlightRecord;
 use crate::base::lane::build;
 use crate::model::attitude::in_world;
@@ -57,23 +56,19 @@ fn shifted(record: &FlightRecord, from: usize, offset: f64) -> Vec<[f64; 3]> {
         return (0..n).map(|i| std::array::from_fn(|k| record.fine.imu[from + k][i])).collect();
     }
     let (time, imu) = (&record.fine.time, &record.fine.imu[from..from + 3]);
-    each_of(
-        n,
-        SAMPLES,
-        #[inline(always)]
-        |near| -> [f64; 3] {
-            let t = time[near] + offset;
-            let mut i = near.min(n - 2);
-            while i > 0 && time[i] > t {
-                i -= 1;
-            }
-            while i + 2 < n && time[i + 1] < t {
-                i += 1;
-            }
-            let share = ((t - time[i]) / (time[i + 1] - time[i])).clamp(0.0, 1.0);
-            build!(|k| imu[k][i] + share * (imu[k][i + 1] - imu[k][i]))
-        },
-    )
+    let one = |near: usize| -> [f64; 3] {
+        let t = time[near] + offset;
+        let mut i = near.min(n - 2);
+        while i > 0 && time[i] > t {
+            i -= 1;
+        }
+        while i + 2 < n && time[i + 1] < t {
+            i += 1;
+        }
+        let share = ((t - time[i]) / (time[i + 1] - time[i])).clamp(0.0, 1.0);
+        build!(|k| imu[k][i] + share * (imu[k][i + 1] - imu[k][i]))
+    };
+    (0..n).map(one).collect()
 }
 
 /// Specific forces `force` of the IMU's samples, turned into the world and through a first-order lag of `tau` seconds;
@@ -119,14 +114,10 @@ pub fn fine_axes(record: &FlightRecord, i: usize) -> [[f64; 3]; 3] {
 #[inline(always)]
 pub fn slopes(time: &[f64], rates: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let n = time.len();
-    each_of(
-        n,
-        SAMPLES,
-        #[inline(always)]
-        |i| {
-            let (a, b) = (i.saturating_sub(1), (i + 1).min(n - 1));
-            let h = (time[b] - time[a]).max(1e-6);
-            build!(|k| (rates[b][k] - rates[a][k]) / h)
-        },
-    )
+    let one = |i: usize| {
+        let (a, b) = (i.saturating_sub(1), (i + 1).min(n - 1));
+        let h = (time[b] - time[a]).max(1e-6);
+        std::array::from_fn(|k| (rates[b][k] - rates[a][k]) / h)
+    };
+    (0..n).map(one).collect()
 }

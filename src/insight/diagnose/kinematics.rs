@@ -3,7 +3,6 @@
 use super::bends;
 use super::imu_seen::{ShiftedImu, fine_axes, lagged};
 use super::model::Model;
-use super::parts::{SAMPLES, WINDOWS, each_of};
 use super::record::FlightRecord;
 use crate::base::lane::build;
 use crate::model::attitude::{Quaternion, body_axes, compose, in_world, normalized, rotation_vector, small_rotation};
@@ -30,59 +29,56 @@ pub fn integrate(
     command: &[[f64; 4]],
     imu: &ShiftedImu,
 ) -> [Vec<f64>; 6] {
+    let mut out: [Vec<f64>; 6] = Default::default();
     if record.windows.is_empty() {
-        return Default::default();
+        return out;
     }
     let k = model.sensors(x);
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let tau = model.acting(x, Role::VelocityLag) * (1.0 - x[bends::VELOCITY]);
     let fine = &record.fine;
-    let corrected = each_of(
-        imu.gyro.len(),
-        SAMPLES,
-        #[inline(always)]
-        |i| {
-            let measured = [imu.gyro[i], imu.force[i]];
-            if !k.any() {
-                return joined(measured);
-            }
+    let mut corrected: Vec<[f64; 6]> = Vec::with_capacity(imu.gyro.len());
+    for i in 0..imu.gyro.len() {
+        let measured = [imu.gyro[i], imu.force[i]];
+        corrected.push(if k.any() {
             let throttle = extended::throttle(command[i / fine.every][3]);
             let throttle = if throttle.is_finite() { throttle } else { 0.0 };
             truth(&k, measured, imu.slope[i], throttle)
-        },
-    );
+        } else {
+            joined(measured)
+        });
+    }
     let lagged = if tau > 0.0 { Some(missing(record, &corrected, tau)) } else { None };
-    let all = each_of(
-        record.windows.len(),
-        WINDOWS,
-        #[inline(always)]
-        |w| {
-            let [from, to] = record.windows[w];
-            let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
-            let axes = record.axes[from];
-            // Gravity was taken off the measured change for as long as the recorder's clock said, not for as long as it
-            // was.
-            let fast = (1.0 - stretch) * (record.time[to] - record.time[from]) * model.vehicle().gravity_m_s2;
-            let mut pushed: [f64; 3] = std::array::from_fn(|j| fast * axes[j][2]);
-            for i in from * fine.every..to * fine.every {
-                let h = (fine.time[i + 1] - fine.time[i]) * stretch;
-                let mean: [f64; 6] = std::array::from_fn(|j| 0.5 * (corrected[i][j] + corrected[i + 1][j]));
-                let half = small_rotation([mean[0], mean[1], mean[2]], 0.5 * h);
-                let middle = compose(turn, half);
-                turn = normalized(compose(middle, half));
-                let mut push = in_world(&body_axes(middle), [mean[3], mean[4], mean[5]]);
-                if let Some(world) = &lagged {
-                    for j in 0..3 {
-                        push[j] += (0..3).map(|c| axes[j][c] * 0.5 * (world[i][c] + world[i + 1][c])).sum::<f64>();
-                    }
+    for &[from, to] in &record.windows {
+        let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
+        let axes = record.axes[from];
+        // Gravity was taken off the measured change for as long as the recorder's clock said, not for as long as it
+        // was.
+        let fast = (1.0 - stretch) * (record.time[to] - record.time[from]) * model.vehicle().gravity_m_s2;
+        let mut pushed: [f64; 3] = build!(|j| fast * axes[j][2]);
+        for i in from * fine.every..to * fine.every {
+            let h = (fine.time[i + 1] - fine.time[i]) * stretch;
+            let mean: [f64; 6] = build!(|j| 0.5 * (corrected[i][j] + corrected[i + 1][j]));
+            let half = small_rotation([mean[0], mean[1], mean[2]], 0.5 * h);
+            let middle = compose(turn, half);
+            turn = normalized(compose(middle, half));
+            let mut push = in_world(&body_axes(middle), [mean[3], mean[4], mean[5]]);
+            if let Some(world) = &lagged {
+                for j in 0..3 {
+                    push[j] += (0..3).map(|c| axes[j][c] * 0.5 * (world[i][c] + world[i + 1][c])).sum::<f64>();
                 }
-                (0..3).for_each(|j| pushed[j] += h * push[j]);
             }
-            joined([rotation_vector(turn), pushed])
-        },
-    );
-    let known = if record.moves { 6 } else { 3 };
-    std::array::from_fn(|j| if j < known { all.iter().map(|one| one[j]).collect() } else { Vec::new() })
+            (0..3).for_each(|j| pushed[j] += h * push[j]);
+        }
+        let rotated = rotation_vector(turn);
+        for j in 0..3 {
+            out[j].push(rotated[j]);
+            if record.moves {
+                out[3 + j].push(pushed[j]);
+            }
+        }
+    }
+    out
 }
 
 /// The truth behind a reading of rates and specific force: what the sensors make of it is small, so that two rounds of
@@ -93,8 +89,8 @@ fn truth(k: &SensorErrors, measured: [[f64; 3]; 2], acceleration: [f64; 3], thro
     for _ in 0..2 {
         let mut sensed = Sensed { rates, acceleration, force, throttle };
         k.sense(&mut sensed);
-        rates = std::array::from_fn(|j| rates[j] + measured[0][j] - sensed.rates[j]);
-        force = std::array::from_fn(|j| force[j] + measured[1][j] - sensed.force[j]);
+        rates = build!(|j| rates[j] + measured[0][j] - sensed.rates[j]);
+        force = build!(|j| force[j] + measured[1][j] - sensed.force[j]);
     }
     joined([rates, force])
 }

@@ -8,7 +8,6 @@ use super::imu_seen::{LaggedForce, ShiftedImu, slopes};
 use super::kinematics;
 use super::model::Model;
 use super::numbers::BEGIN;
-use super::parts::{BINS, SAMPLES, each_of};
 use super::record::FlightRecord;
 use crate::base::lane::{build, fused};
 use crate::flight::lowpass::LowPass;
@@ -141,36 +140,32 @@ impl Predicted {
     #[inline(always)]
     fn push(&mut self, p: &Extended<f64>, record: &FlightRecord, [tau, gravity]: [f64; 2]) {
         let since = record.since();
+        let mut out = Vec::with_capacity(record.time.len());
         if tau > 0.0 {
             self.lagged = LaggedForce::renewed(std::mem::take(&mut self.lagged), record, tau);
         }
-        let force = each_of(
-            record.time.len(),
-            SAMPLES,
-            #[inline(always)]
-            |i| {
-                let mut velocity: [f64; 3] = build!(|k| record.velocity[k][i]);
-                if tau > 0.0 {
-                    let mut gains = self.lagged.world[i * record.fine.every];
-                    gains[2] -= gravity;
-                    for k in 0..3 {
-                        velocity[k] += tau * dot(record.axes[i][k], gains);
-                    }
+        for i in 0..record.time.len() {
+            let mut velocity: [f64; 3] = build!(|k| record.velocity[k][i]);
+            if tau > 0.0 {
+                let mut gains = self.lagged.world[i * record.fine.every];
+                gains[2] -= gravity;
+                for k in 0..3 {
+                    velocity[k] += tau * dot(record.axes[i][k], gains);
                 }
-                let inputs = ForceInputs {
-                    command: self.command[i][3],
-                    voltage: self.voltage[i],
-                    axes: record.axes[i],
-                    velocity,
-                    rates: self.rates[i],
-                    height: record.height[i],
-                    turn_error: self.lag[i],
-                    elapsed: record.time[i] - since,
-                };
-                extended::force(p, &inputs)
-            },
-        );
-        self.force = force.into();
+            }
+            let inputs = ForceInputs {
+                command: self.command[i][3],
+                voltage: self.voltage[i],
+                axes: record.axes[i],
+                velocity,
+                rates: self.rates[i],
+                height: record.height[i],
+                turn_error: self.lag[i],
+                elapsed: record.time[i] - since,
+            };
+            out.push(extended::force(p, &inputs));
+        }
+        self.force = out.into();
     }
 
     /// What the thrust has beside its curve.
@@ -188,36 +183,36 @@ impl Predicted {
     fn sense(&mut self, p: &Extended<f64>, dirty: Quantities, model: &Model, record: &FlightRecord, x: &[f64]) {
         let k = model.sensors(x);
         let turning = |card: &&Card| card.reads.contains(&Quantity::AngularAcceleration);
-        let acceleration = model.present(x).iter().any(turning).then(|| self.turning(p, record));
+        let acceleration = if model.present(x).iter().any(turning) {
+            self.turning(p, record)
+        } else {
+            vec![[0.0; 3]; record.time.len()]
+        };
         let known =
             |c: usize| if c < 3 { record.commanded[0] } else { record.commanded[1] && (record.moves || c == 5) };
         let wanted = |c: usize| known(c) && dirty.has(if c < 3 { Quantity::Gyro } else { Quantity::Accelerometer });
         let bent = bends::taps(x).map(|taps| self.bent_rates(record, &taps));
-        let means = each_of(
-            record.bins.len(),
-            BINS,
-            #[inline(always)]
-            |bin| {
-                let [from, to] = record.bins[bin];
-                let mut sum = [0.0; 6];
-                for i in from..to {
-                    let throttle = extended::throttle(self.command[i][3]);
-                    let (rates, force) = (self.rates[i], self.force[i]);
-                    let acceleration = acceleration.as_ref().map_or([0.0; 3], |all| all[i]);
-                    let mut sensed = Sensed { rates, acceleration, force, throttle };
-                    k.sense(&mut sensed);
-                    for j in 0..3 {
-                        // The gyro's own lateness, on top of what the sensor makes of it.
-                        sum[j] += sensed.rates[j] - rates[j] + self.seen_rates[i][j];
-                        sum[j] += bent.as_ref().map_or(0.0, |bent| bent[i][j]);
-                        sum[3 + j] += sensed.force[j];
-                    }
+        let mut means: [Vec<f64>; 6] = Default::default();
+        for &[from, to] in &record.bins {
+            let mut sum = [0.0; 6];
+            for i in from..to {
+                let throttle = extended::throttle(self.command[i][3]);
+                let (rates, force) = (self.rates[i], self.force[i]);
+                let mut sensed = Sensed { rates, acceleration: acceleration[i], force, throttle };
+                k.sense(&mut sensed);
+                for j in 0..3 {
+                    // The gyro's own lateness, on top of what the sensor makes of it.
+                    sum[j] += sensed.rates[j] - rates[j] + self.seen_rates[i][j];
+                    sum[j] += bent.as_ref().map_or(0.0, |bent| bent[i][j]);
+                    sum[3 + j] += sensed.force[j];
                 }
-                sum.map(|sum| sum / (to - from) as f64)
-            },
-        );
-        for c in (0..6).filter(|&c| wanted(c)) {
-            self.channels[c] = means.iter().map(|mean| mean[c]).collect::<Vec<_>>().into();
+            }
+            (0..6).filter(|&c| wanted(c)).for_each(|c| means[c].push(sum[c] / (to - from) as f64));
+        }
+        for (c, mean) in means.into_iter().enumerate() {
+            if wanted(c) {
+                self.channels[c] = mean.into();
+            }
         }
     }
 
@@ -239,17 +234,14 @@ impl Predicted {
         if !record.commanded[0] {
             return slopes(&record.time, &self.rates);
         }
-        each_of(
-            record.time.len(),
-            SAMPLES,
-            #[inline(always)]
-            |i| {
-                let (sent, slope) = self.setpoint[i];
-                let voltage = supplied(p, record, i);
-                let (next, _) = extended::actuator_response(p, self.command[i], slope, sent, voltage, MOMENT_S);
-                let (now, next) = (extended::body_rates(p, self.command[i]), extended::body_rates(p, next));
-                build!(|k| (next[k] - now[k]) / MOMENT_S)
-            },
-        )
+        let mut out = Vec::with_capacity(record.time.len());
+        for i in 0..record.time.len() {
+            let (sent, slope) = self.setpoint[i];
+            let voltage = supplied(p, record, i);
+            let (next, _) = extended::actuator_response(p, self.command[i], slope, sent, voltage, MOMENT_S);
+            let (now, next) = (extended::body_rates(p, self.command[i]), extended::body_rates(p, next));
+            out.push(build!(|k| (next[k] - now[k]) / MOMENT_S));
+        }
+        out
     }
 }
