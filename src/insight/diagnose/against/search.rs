@@ -93,7 +93,8 @@ impl<'a> DifferenceSearch<'a> {
         let Some(first) = tried.first().filter(worth) else { return false };
         // Of those that do nearly as well the plainest is the answer.
         let nearly = |t: &&Tried| tied(first, t) && merit(t) > PLAIN_SHARE.get() * merit(first);
-        let best = tried.iter().filter(nearly).min_by_key(|t| self.suspects[t.suspect].plainness()).unwrap_or(first);
+        let plainness = |t: &&Tried| self.suspects[t.suspect].plainness();
+        let best = std::iter::once(first).chain(tried.iter().filter(nearly)).min_by_key(plainness).unwrap_or(first);
         let near = tried.iter().filter(|t| t.suspect != best.suspect && tied(best, t));
         let pending = near.map(|t| (t.suspect, t.gain)).collect();
         let (suspect, x, free) = (best.suspect, best.point.x.clone(), best.point.free.clone());
