@@ -319,7 +319,8 @@ def judgement(pair):
     if not pair["changed"]:
         return "WRONG" if named else "right"
     if named:
-        return "right" if pair["first_right"] == "1" else "WRONG FIRST"
+        in_set = "in the set" if pair["first_or_set"] == "1" else "WRONG FIRST"
+        return "right" if pair["first_right"] == "1" else in_set
     return "could not show" if pair["could_not_show"] == "1" else "MISSED"
 
 
@@ -337,6 +338,7 @@ def against(file="against"):
         ("the same, of what the flights could show", wilson(right, shown)),
         ("with: told that these flights could not show it", wilson(len(changed) - shown, len(changed))),
         ("with: only suspected, or not noticed", wilson(count(changed, "MISSED"), len(changed))),
+        ("with: a right name in the first set, not first", wilson(count(changed, "in the set"), len(changed))),
         ("with: a wrong name first", wilson(count(changed, "WRONG FIRST"), len(changed))),
     ]
     return table([f"{len(without)} without a change, {len(changed)} with one", "pairs"], body)

@@ -253,7 +253,7 @@ fn saturated(problem: &Problem, whitener: &Whitener, point: &FitPoint, found: &[
     left_over(problem, whitener, point, found).map_or(whitener.clone(), |left| Whitener::of(&left, &problem.rows))
 }
 
-/// What is left when all columns are taken off, of each set of flights by itself: a difference between them is no noise.
+/// What is left when all columns are taken off, of each set of flights by itself: a difference of them is no noise.
 pub fn left_over(
     problem: &Problem,
     whitener: &Whitener,

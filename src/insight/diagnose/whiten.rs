@@ -97,8 +97,8 @@ impl Whitener {
         white
     }
 
-    /// The same, deaf to what `directions` of each channel's rows have beside the columns `heard`, which are whitened by
-    /// this: whatever of it there is counts for nothing.
+    /// The same, deaf to what `directions` of each channel's rows have beside the columns `heard`, which are whitened
+    /// by this: whatever of it there is counts for nothing.
     pub fn deaf_to(
         self,
         directions: &[Vec<Vec<f64>>; CHANNELS],

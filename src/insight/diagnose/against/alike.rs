@@ -19,8 +19,8 @@ use rayon::prelude::*;
 const RIDGE: f64 = 1e-6;
 
 /// The noise of both sets, each by itself and without what is a function of what is flown; deaf to such functions. It
-/// is as loud in each channel as its stretches of time disagree: a rate loop that no model has leaves ten times what the
-/// gyro's noise would.
+/// is as loud in each channel as its stretches of time disagree: a rate loop that no model has leaves ten times what
+/// the gyro's noise would.
 pub fn deaf(problem: &Problem, selection: &Selection) -> Whitener {
     let Selection { point, whitener, .. } = selection;
     let directions = directions(problem, selection);

@@ -16,7 +16,7 @@ pub fn directions(problem: &Problem, selection: &Selection) -> [Vec<Vec<f64>>; C
 }
 
 fn of_channel(problem: &Problem, selection: &Selection, c: usize) -> Vec<Vec<f64>> {
-    let flown = Flown { problem, selection, c };
+    let flown = FlownRows { problem, selection, c };
     let mut all = match c {
         0..FORCE => flown.turning(c),
         FORCE..TURN => flown.pushed(c - FORCE),
@@ -27,13 +27,13 @@ fn of_channel(problem: &Problem, selection: &Selection, c: usize) -> Vec<Vec<f64
 }
 
 /// What is flown at the rows of a channel.
-struct Flown<'a> {
+struct FlownRows<'a> {
     problem: &'a Problem,
     selection: &'a Selection,
     c: usize,
 }
 
-impl Flown<'_> {
+impl FlownRows<'_> {
     /// A signal by flight and sample, so long before each row.
     fn at(&self, before_s: f64, of: impl Fn(usize, usize) -> f64) -> Vec<f64> {
         let one = |row: &ResidualRow| {
