@@ -31,7 +31,7 @@ CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were th
     CHANGED_IMPACT = 0.02, Assumed("of eight pairs, changes that were found did 0.8 and more, a false one 0.017");
     /// Change of a sensor's constant error that matters, in small typical sizes.
     CHANGED_BIAS = 4.0, Assumed("it is another after every switching on");
-    /// Share of the best gain from which a number of the compact model is preferred to an effect that is tied with it.
+    /// Share of the best gain from which the plainest of those that are tied is preferred.
     PLAIN_SHARE = 0.9, Assumed("slower gains did 0.95 of what a response that slows with the voltage did");
     /// Squared standard deviations over stretches of time from which a difference is worth a fit.
     CHANGED_EVIDENCE = 4.5, Assumed("that of an effect; more would ask for more stretches than some causes show in");

@@ -11,6 +11,7 @@ use crate::insight::diagnose::numbers::span;
 use crate::insight::diagnose::problem::{ChannelValues, Problem};
 use crate::insight::diagnose::select::{Selection, left_over};
 use crate::insight::diagnose::whiten::Whitener;
+use crate::insight::estimate::gram::dot;
 use crate::insight::estimate::inverse::inverse;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -57,7 +58,6 @@ fn dispersion(problem: &Problem, white: &ChannelValues, columns: &[&ChannelValue
 /// Takes off a channel what it has of `directions`.
 fn take_off(left: &mut [f64], directions: &[Vec<f64>]) {
     let n = directions.len();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let square = DMatrix::from_fn(n, n, |i, j| dot(&directions[i], &directions[j]));
     let ridge: Vec<f64> = (0..n).map(|i| RIDGE * square[(i, i)]).collect();
     let Some(inner) = inverse(&square, &ridge) else { return };
