@@ -156,6 +156,7 @@ effects! {
         command_dropout::CommandDropout
         gusts::Gusts
         imu_lever_arm::ImuLeverArm
+        com_offset::ComOffset
         imu_misalignment::ImuMisalignment
         accel_misalignment::AccelMisalignment
         accel_scale::AccelScale

@@ -487,6 +487,7 @@ fn sensors_read_as_their_equations_say() {
     assert_eq!(read("stream_offset", &[0.01]), ([1.0, 2.0, 3.0], [0.0, 0.0, 10.0]));
     // w x (w x r) of r = x: (w . r) w - w^2 r.
     assert_eq!(read("imu_lever_arm", &[1.0, 0.0, 0.0]).1, [1.0 - 14.0, 2.0, 10.0 + 3.0]);
+    assert_eq!(read("com_offset", &[1.0, 0.0, 0.0]), read("imu_lever_arm", &[1.0, 0.0, 0.0]));
     // r x f of r = x and f = z is -y.
     assert_eq!(read("accel_misalignment", &[0.1, 0.0, 0.0]), ([1.0, 2.0, 3.0], [0.0, -1.0, 10.0]));
     assert_eq!(read("imu_misalignment", &[0.1, 0.0, 0.0]), ([1.0, 2.0 - 0.1 * 3.0, 3.0 + 0.2], [0.0, -1.0, 10.0]));

@@ -4,6 +4,7 @@
 use crate::truth::Vehicle;
 use crate::truth::effects::{Hidden, outside};
 use crate::truth::hidden::{Setting, Style, fly};
+use nalgebra::Vector3;
 use racer::insight::diagnose::finding::{Diagnosis, Finding, Status, Verdict};
 use racer::insight::diagnose::{Diagnosed, diagnose};
 use racer::insight::quality::check;
@@ -12,10 +13,13 @@ use rand::rngs::StdRng;
 
 const SECONDS: f64 = 120.0;
 
+fn setting(seed: u64) -> Setting {
+    Setting { seed, seconds: SECONDS, noise: 1.0, imu_hz: 250.0, style: Style::Excited }
+}
+
 /// Two minutes of excited flight of `vehicle` with effects, diagnosed as if it had none.
 fn diagnosed(vehicle: &Vehicle, hidden: &[Hidden], seed: u64) -> Diagnosed {
-    let setting = Setting { seed, seconds: SECONDS, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
-    let log = fly(vehicle, hidden, &setting);
+    let log = fly(vehicle, hidden, &setting(seed));
     diagnose(vec![check(&log)], &vehicle.in_racer(), &mut |_, _| ())
 }
 
@@ -111,6 +115,26 @@ fn a_lever_arm_corrects_the_log_and_is_no_dynamics() {
     assert_eq!(named(&diagnosis).iter().map(|f| f.effect).collect::<Vec<_>>(), ["imu_lever_arm"]);
     let extended = extended.expect("no worse than what was given");
     assert!(extended.effects.is_empty(), "{:?}", extended.effects);
+}
+
+/// An IMU away from the centre of mass, and a velocity that is told of the same point.
+#[test]
+fn a_centre_of_mass_away_from_what_is_logged_is_no_lever_arm() {
+    let vehicle = Vehicle::draw(45);
+    let arm = Hidden::sized("imu_lever_arm", 0.02, &vehicle, &mut StdRng::seed_from_u64(45));
+    let r = Vector3::from(["rx", "ry", "rz"].map(|name| arm.get(name)));
+    let mut log = fly(&vehicle, &[arm], &setting(45));
+    for (time, row) in log.odometry.time_s.iter().zip(&mut log.odometry.rows) {
+        let at = log.imu.time_s.partition_point(|t| t <= time).clamp(1, log.imu.len()) - 1;
+        let carried = Vector3::from_column_slice(&log.imu.rows[at][..3]).cross(&r);
+        (0..3).for_each(|i| row[7 + i] += carried[i]);
+    }
+    let Diagnosed { diagnosis, .. } = diagnose(vec![check(&log)], &vehicle.in_racer(), &mut |_, _| ());
+    let found = named(&diagnosis);
+    assert_eq!(found.iter().map(|f| f.effect).collect::<Vec<_>>(), ["com_offset"]);
+    for (i, name) in ["rx", "ry", "rz"].into_iter().enumerate() {
+        assert!((found[0].parameters[name].value - r[i]).abs() < 0.002, "{name}: {}", r[i]);
+    }
 }
 
 #[test]

@@ -33,7 +33,7 @@ pub fn integrate(
     if record.windows.is_empty() {
         return out;
     }
-    let k = model.sensors(x);
+    let k = model.sensors(x).integrated();
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let tau = model.acting(x, Role::VelocityLag) * (1.0 - x[bends::VELOCITY]);
     let fine = &record.fine;

@@ -1,6 +1,7 @@
 //! Numbers of all effects of the simulator, and which of them are present.
 
 use super::card::RateResponse;
+use super::quantity::Quantity;
 use super::{COUNT, Card, LOG, MODEL, offset};
 use crate::base::lane::Lane;
 
@@ -54,6 +55,12 @@ impl<'a> SensorErrors<'a> {
     /// Effects with a number that is not 0 are present.
     pub fn new(numbers: &'a [f64]) -> Self {
         Self { numbers, active: active(&LOG, numbers) }
+    }
+
+    /// Those alone that readings, corrected, integrate to something else without: errors of the sensors themselves.
+    pub fn integrated(self) -> Self {
+        let integrated = |i: &usize| LOG[*i].writes.contains(&Quantity::Integrated);
+        Self { active: self.active & (0..LOG.len()).filter(integrated).fold(0, |all, i| all | 1 << i), ..self }
     }
 
     /// Whether any effect is present.
