@@ -1,6 +1,6 @@
 //! A centre of mass away from the point r whose velocity and acceleration the log has, such as the middle of a motion
-//! capture's markers: that point is accelerated by w' x r + w x (w x r) more. Velocity and accelerometer agree on it, as
-//! they do not on an IMU's lever arm. The airspeed of the centre, less by w x r, is taken as the point's.
+//! capture's markers: that point is accelerated by w' x r + w x (w x r) more. Velocity and accelerometer agree on it,
+//! as they do not on an IMU's lever arm. The airspeed of the centre, less by w x r, is taken as the point's.
 
 use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Sensed};
 use crate::model::attitude::carried;
