@@ -16,14 +16,6 @@ pub fn cross<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[1].mul_add(b[2], -(a[2] * b[1])), a[2].mul_add(b[0], -(a[0] * b[2])), a[0].mul_add(b[1], -(a[1] * b[0]))]
 }
 
-/// Acceleration of a point at `r` beyond that of the body's centre, m/s2, at these body rates (rad/s) and their change
-/// (rad/s2): w' x r + w x (w x r).
-#[inline(always)]
-pub fn carried<R: Real>(rates: [R; 3], acceleration: [R; 3], r: [R; 3]) -> [R; 3] {
-    let [turning, centripetal] = [cross(acceleration, r), cross(rates, cross(rates, r))];
-    [turning[0] + centripetal[0], turning[1] + centripetal[1], turning[2] + centripetal[2]]
-}
-
 /// c0 + c1 x + .. + c4 x^4.
 #[inline(always)]
 fn polynomial<R: Real>(c: [f64; 5], x: R) -> R {

@@ -1,7 +1,7 @@
 //! An IMU away from the centre of mass feels its own turning: f += w' x r + w x (w x r).
 
 use super::{Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel, Sensed};
-use crate::model::attitude::carried;
+use crate::model::attitude::cross;
 
 pub struct ImuLeverArm;
 
@@ -28,7 +28,9 @@ impl Effect for ImuLeverArm {
 
     #[inline(always)]
     fn sense(k: &[f64], sensed: &mut Sensed) {
-        let felt = carried(sensed.rates, sensed.acceleration, [k[0], k[1], k[2]]);
-        (0..3).for_each(|i| sensed.force[i] += felt[i]);
+        let r = [k[0], k[1], k[2]];
+        let turning = cross(sensed.acceleration, r);
+        let centripetal = cross(sensed.rates, cross(sensed.rates, r));
+        (0..3).for_each(|i| sensed.force[i] += turning[i] + centripetal[i]);
     }
 }

@@ -57,7 +57,7 @@ impl<'a> SensorErrors<'a> {
         Self { numbers, active: active(&LOG, numbers) }
     }
 
-    /// Those alone that readings, corrected, integrate to something else without: errors of the sensors themselves.
+    /// The same without what attitude and velocity show as well, which readings rightly integrate to.
     pub fn integrated(self) -> Self {
         let integrated = |i: &usize| LOG[*i].writes.contains(&Quantity::Integrated);
         Self { active: self.active & (0..LOG.len()).filter(integrated).fold(0, |all, i| all | 1 << i), ..self }
