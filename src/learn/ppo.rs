@@ -8,6 +8,7 @@ mod chunk;
 pub mod config;
 pub mod gae;
 pub mod loss;
+mod phase;
 pub mod rollout;
 pub mod squash;
 pub mod state;

@@ -64,7 +64,7 @@ fn check_at(head: f64, name: &str, weights: Weights) {
     let batch = batch(&data);
     let rows: Vec<u32> = (0..ROWS as u32).collect();
     let mut updater = Updater::new(&network);
-    let losses = updater.differentiate::<Portable<f64>, Exact>(&network, &batch, &rows, &weights);
+    let losses = updater.differentiate::<Portable<f64>, Exact>(&network, &batch, &rows, &weights, None);
     let clipped = (0.05..0.95).contains(&losses.clip_fraction);
     assert!(clipped || losses.saturation > 0.01, "{name} takes no part: {losses:?}");
     let gradient = updater.gradient.to_vec();
@@ -77,7 +77,7 @@ fn check_at(head: f64, name: &str, weights: Weights) {
         let here = network.parameters[i];
         let mut at = |x: f64| {
             network.parameters[i] = x;
-            updater.differentiate::<Portable<f64>, Exact>(&network, &batch, &rows, &weights).total
+            updater.differentiate::<Portable<f64>, Exact>(&network, &batch, &rows, &weights, None).total
         };
         let difference = (at(here + step) - at(here - step)) / (2.0 * step);
         network.parameters[i] = here;
@@ -126,8 +126,8 @@ fn in_bf16_the_gradient_is_nearly_the_same() {
     let weights = Weights { clip: 0.3, entropy: 0.01, squashed: true, magnitude: 0.15, saturation: 0.4, value: 0.5 };
     let [mut exact, mut rounded] = [Updater::new(&network), Updater::new(&network)];
     let losses = [
-        exact.differentiate::<Portable<f32>, Exact>(&network, &batch, &rows, &weights),
-        rounded.differentiate::<Portable<f32>, Bf16>(&network, &batch, &rows, &weights),
+        exact.differentiate::<Portable<f32>, Exact>(&network, &batch, &rows, &weights, None),
+        rounded.differentiate::<Portable<f32>, Bf16>(&network, &batch, &rows, &weights, None),
     ];
     assert!((losses[0].total / losses[1].total - 1.0).abs() < 0.01, "{losses:?}");
     let product = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(a * b)).sum::<f64>();

@@ -6,10 +6,10 @@ pub mod parts;
 use super::batch::Minibatch;
 use super::loss::{Samples, TERMS, Weights, loss};
 use crate::base::lane::{LANES, Lane, Real, build};
-use crate::learn::nn::Network;
 use crate::learn::nn::aligned::Aligned;
 use crate::learn::nn::gemm::Precision;
 use crate::learn::nn::mlp::{self, Hidden, Layout};
+use crate::learn::nn::{HIDDEN, Network};
 use crate::learn::policy::ACTIONS;
 
 /// Rows of 16 samples in a tile.
@@ -19,8 +19,6 @@ const PITCH: usize = TILE_ROWS * LANES;
 /// What all chunks of a minibatch share.
 pub struct Job<'a, E> {
     pub network: &'a Network<E>,
-    /// The second layers' weights, transposed: actor, critic.
-    pub turned: &'a [Aligned<E>; 2],
     pub batch: &'a Minibatch<'a, E>,
     pub weights: &'a Weights,
     /// 1 over the samples of the minibatch.
@@ -42,6 +40,8 @@ pub struct Worker<E> {
     critic: Hidden<E>,
     mean: Aligned<E>,
     value: Aligned<E>,
+    /// The second layers' weights, transposed: actor, critic.
+    turned: [Aligned<E>; 2],
 }
 
 impl<E: Copy + Default> Worker<E> {
@@ -53,6 +53,17 @@ impl<E: Copy + Default> Worker<E> {
             critic: Hidden::new(PITCH),
             mean: tile(ACTIONS),
             value: tile(1),
+            turned: [Aligned::zeros(HIDDEN * HIDDEN), Aligned::zeros(HIDDEN * HIDDEN)],
+        }
+    }
+
+    /// Transposes what the chunks of a step need so.
+    pub fn turn<L: Lane<Elem = E>>(&mut self, network: &Network<E>) {
+        for (shape, turned) in [&network.actor, &network.critic].into_iter().zip(&mut self.turned) {
+            L::vectorize(
+                #[inline(always)]
+                || mlp::turn::<L>(shape, &network.parameters, turned),
+            );
         }
     }
 }
@@ -102,7 +113,7 @@ fn tile<L: Lane, P: Precision<L>>(
     sums: &mut Sums<L>,
     gradient: &mut [L::Elem],
 ) {
-    let Worker { x, actor, critic, mean, value } = worker;
+    let Worker { x, actor, critic, mean, value, turned } = worker;
     let (network, samples) = (job.network, rows.len() * LANES);
     let p = &network.parameters;
     gather::<L>(job.batch.observations, network.inputs(), rows, x);
@@ -112,8 +123,8 @@ fn tile<L: Lane, P: Precision<L>>(
     let mut back = |shape: &Layout, turned: &[L::Elem], h: &mut Hidden<L::Elem>, dy: &[L::Elem]| {
         mlp::backward::<L, P>(shape, p, turned, samples, PITCH, x, h, dy, gradient);
     };
-    back(&network.actor, &job.turned[0], actor, mean);
-    back(&network.critic, &job.turned[1], critic, value);
+    back(&network.actor, &turned[0], actor, mean);
+    back(&network.critic, &turned[1], critic, value);
 }
 
 /// Copies the observations `[row][feature][16]` of `rows` side by side: `x` `[feature][PITCH]`.

@@ -1,24 +1,29 @@
 //! One optimiser step on a minibatch: forward, loss and backward on tiles that stay in cache, a fixed-order sum, Adam.
 //!
 //! Work is cut into chunks of a fixed number of rows whatever the thread count, each with a gradient of its own, summed
-//! in order: one thread and many give the same bits.
+//! in order: one thread and many give the same bits. Sum and Adam are cut into as many spans of the parameters as there
+//! are threads. What one thread does for all others, all of them fetch from its processor's cache: where that is far
+//! away, on another die, it takes longer than doing it.
 
 pub mod parts;
+mod span;
 
 use super::batch::Minibatch;
 use super::chunk::{Chunk, Job, Worker};
 use super::config::ProductPrecision;
 use super::loss::{TERMS, Weights};
+use super::phase::{Phase, wait};
 use crate::base::lane::{Kernel, LANES, Lane, Lane32, Level, Real, dispatch};
+use crate::learn::nn::Network;
 use crate::learn::nn::adam::Adam;
 use crate::learn::nn::aligned::Aligned;
 use crate::learn::nn::bf16::Bf16;
 use crate::learn::nn::gemm::{Exact, Precision};
-use crate::learn::nn::{HIDDEN, Network, mlp};
 use crate::learn::policy;
 use rayon::prelude::*;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use span::spans;
+use std::mem::swap;
+use std::sync::{OnceLock, PoisonError, RwLock};
 
 /// What a step depends on besides the data.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,9 +62,9 @@ pub struct Updater<E> {
     pub adam: Adam<E>,
     /// The last step's gradient, before clipping.
     pub gradient: Aligned<E>,
-    /// Transposes of the second layers' weights: actor, critic.
-    turned: [Aligned<E>; 2],
-    chunks: Vec<Mutex<Chunk<E>>>,
+    /// The parameters after the step.
+    next: Aligned<E>,
+    chunks: Vec<RwLock<Chunk<E>>>,
     /// One for each thread.
     workers: Vec<Worker<E>>,
 }
@@ -104,7 +109,7 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Updater<E> {
         Updater {
             adam: Adam::new(n),
             gradient: Aligned::zeros(n),
-            turned: [Aligned::zeros(HIDDEN * HIDDEN), Aligned::zeros(HIDDEN * HIDDEN)],
+            next: Aligned::zeros(n),
             chunks: Vec::new(),
             workers: Vec::new(),
         }
@@ -118,105 +123,80 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Updater<E> {
         rows: &[u32],
         hyper: &Hyper,
     ) -> Losses {
-        let losses = self.differentiate::<L, P>(network, batch, rows, &hyper.weights);
-        self.descend::<L>(network, hyper, losses.gradient_norm);
+        let losses = self.differentiate::<L, P>(network, batch, rows, &hyper.weights, Some(hyper));
+        swap(&mut network.parameters, &mut self.next);
         losses
     }
 
-    /// Loss and gradient alone.
+    /// Loss and gradient, and with `hyper` the parameters that a step leads to.
     pub fn differentiate<L: Lane<Elem = E>, P: Precision<L>>(
         &mut self,
         network: &Network<E>,
         batch: &Minibatch<E>,
         rows: &[u32],
         weights: &Weights,
+        hyper: Option<&Hyper>,
     ) -> Losses {
         assert!(!rows.is_empty(), "a minibatch of nothing");
-        for (shape, turned) in [&network.actor, &network.critic].into_iter().zip(&mut self.turned) {
-            L::vectorize(
-                #[inline(always)]
-                || mlp::turn::<L>(shape, &network.parameters, turned),
-            );
-        }
-        let parts = rows.len().div_ceil(CHUNK_ROWS);
-        self.chunks.resize_with(parts, || Mutex::new(Chunk::new(network)));
-        self.workers.resize_with(rayon::current_num_threads(), || Worker::new(network));
+        let Self { adam, gradient, next, chunks, workers } = self;
+        chunks.resize_with(rows.len().div_ceil(CHUNK_ROWS), || RwLock::new(Chunk::new(network)));
+        workers.resize_with(rayon::current_num_threads(), || Worker::new(network));
         let share = 1.0 / (rows.len() * LANES) as f64;
-        let job = Job { network, turned: &self.turned, batch, weights, share };
-        let (chunks, next) = (&self.chunks, AtomicUsize::new(0));
-        // A free thread takes the next chunk: which thread it is makes no difference to the chunk's result.
-        self.workers.par_iter_mut().with_max_len(1).for_each(|worker| {
-            loop {
-                let part = next.fetch_add(1, Ordering::Relaxed);
-                let Some(chunk) = chunks.get(part) else { break };
+        let job = Job { network, batch, weights, share };
+        let rates = hyper.map(|hyper| (hyper, adam.advance(hyper.learning_rate, hyper.adam_epsilon)));
+        let spans = spans(workers.len(), gradient, adam, next);
+        let squares: Vec<OnceLock<L>> = spans.iter().map(|_| OnceLock::new()).collect();
+        let norm = || squares.last().and_then(OnceLock::get).expect("summed").sum().into().sqrt();
+        let [chunked, summed, stepped] = [chunks.len(), spans.len(), spans.len()].map(Phase::new);
+        // Which thread does a part makes no difference to its result.
+        workers.par_iter_mut().with_max_len(1).for_each(|worker| {
+            worker.turn::<L>(network);
+            chunked.share(|part| {
                 let rows = &rows[part * CHUNK_ROWS..rows.len().min((part + 1) * CHUNK_ROWS)];
-                chunk.lock().expect(POISONED).run::<L, P>(&job, rows, worker);
+                chunks[part].write().expect(POISONED).run::<L, P>(&job, rows, worker);
+            });
+            summed.share(|part| {
+                let mut span = spans[part].lock().expect(POISONED);
+                for (number, chunk) in chunks.iter().enumerate() {
+                    // Where a chunk panicked, others wait for this sum.
+                    span.add::<L>(number, &chunk.read().unwrap_or_else(PoisonError::into_inner).gradient);
+                }
+                span.entropy(weights.entropy, network.log_std_range());
+                let before = part.checked_sub(1).map(|before| &squares[before]);
+                wait(|| before.is_none_or(|before| before.get().is_some()));
+                squares[part]
+                    .get_or_init(|| span.squares(before.and_then(OnceLock::get).copied().unwrap_or(L::zero())));
+            });
+            if let Some((hyper, rates)) = &rates {
+                // Clipped to the largest norm.
+                let scale = E::of((hyper.max_gradient_norm / norm().max(f64::MIN_POSITIVE)).min(1.0));
+                let step = |part: usize| {
+                    spans[part].lock().expect(POISONED).descend::<L>(rates, &network.parameters, scale);
+                };
+                stepped.share(step);
             }
         });
-        let norm = self.reduce::<L>(network, weights.entropy);
-
-        let mut sums = [0.0; TERMS.len()];
-        for chunk in &mut self.chunks {
-            let terms = chunk.get_mut().expect(POISONED).terms;
-            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term * share);
-        }
-        let [surrogate, value, magnitude, saturation, approx_kl, clip_fraction, squash] = sums;
-        let entropy = policy::entropy(network.log_std().map(Into::into)) + squash;
-        let costs = weights.magnitude * magnitude + weights.saturation * saturation + weights.value * value;
-        let total = surrogate - weights.entropy * entropy + costs;
-        Losses {
-            total,
-            surrogate,
-            value,
-            entropy,
-            magnitude,
-            saturation,
-            approx_kl,
-            clip_fraction,
-            gradient_norm: norm,
-        }
+        let gradient_norm = norm();
+        losses(chunks, network, weights, share, gradient_norm)
     }
+}
 
-    /// Sums the chunks' gradients in their order, adds the entropy's, and returns the norm. On one thread, as the step
-    /// that follows: both together take less time than waking the others.
-    fn reduce<L: Lane<Elem = E>>(&mut self, network: &Network<E>, entropy: f64) -> f64 {
-        let sum = &mut self.gradient;
-        for (part, chunk) in self.chunks.iter_mut().enumerate() {
-            let from = &chunk.get_mut().expect(POISONED).gradient;
-            L::vectorize(
-                #[inline(always)]
-                || {
-                    for (sum, from) in sum.chunks_exact_mut(LANES).zip(from.chunks_exact(LANES)) {
-                        let before = if part == 0 { L::zero() } else { L::from_slice(sum) };
-                        (before + L::from_slice(from)).write(sum);
-                    }
-                },
-            );
-        }
-        for g in &mut sum[network.log_std_range()] {
-            *g = *g - E::of(entropy);
-        }
-        let squares = L::vectorize(
-            #[inline(always)]
-            || {
-                let mut squares = L::zero();
-                for g in sum.chunks_exact(LANES) {
-                    squares = L::from_slice(g).mul_add(L::from_slice(g), squares);
-                }
-                squares.sum()
-            },
-        );
-        squares.into().sqrt()
+/// The chunks' losses together, of samples that have this `share` each.
+fn losses<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>>(
+    chunks: &mut [RwLock<Chunk<E>>],
+    network: &Network<E>,
+    weights: &Weights,
+    share: f64,
+    gradient_norm: f64,
+) -> Losses {
+    let mut sums = [0.0; TERMS.len()];
+    for chunk in chunks {
+        let terms = chunk.get_mut().expect(POISONED).terms;
+        sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term * share);
     }
-
-    /// Clips the gradient and steps against it.
-    fn descend<L: Lane<Elem = E>>(&mut self, network: &mut Network<E>, hyper: &Hyper, norm: f64) {
-        let rates = self.adam.advance(hyper.learning_rate, hyper.adam_epsilon);
-        let scale = E::of((hyper.max_gradient_norm / norm.max(f64::MIN_POSITIVE)).min(1.0));
-        let Adam { first, second, .. } = &mut self.adam;
-        L::vectorize(
-            #[inline(always)]
-            || rates.step::<L>(&mut network.parameters, first, second, &self.gradient, scale),
-        );
-    }
+    let [surrogate, value, magnitude, saturation, approx_kl, clip_fraction, squash] = sums;
+    let entropy = policy::entropy(network.log_std().map(Into::into)) + squash;
+    let costs = weights.magnitude * magnitude + weights.saturation * saturation + weights.value * value;
+    let total = surrogate - weights.entropy * entropy + costs;
+    Losses { total, surrogate, value, entropy, magnitude, saturation, approx_kl, clip_fraction, gradient_norm }
 }

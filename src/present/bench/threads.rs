@@ -1,7 +1,7 @@
 //! Where an iteration of training spends its time, and what that says of machines with more processors.
 //!
 //! An iteration is a rollout, whose tiles threads share; advantages and shuffling; and optimiser steps, whose chunks
-//! threads share and whose rest one thread does while the others wait. The model counts these and nothing else: clocks
+//! and spans threads share and whose transposes each does for itself. The model counts these and nothing else: clocks
 //! that fall when more processors work, caches and memory that they share are left out.
 
 use crate::base::lane::Level;
@@ -63,9 +63,9 @@ impl ThreadsModel {
 
     /// An optimiser step on so many threads, s.
     pub fn step_s(&self, threads: usize) -> f64 {
-        let (serial, chunks) = (self.step.serial(), self.step.chunks);
-        let shared = (self.step.whole - serial).max(0.0) / chunks as f64 * chunks.div_ceil(threads) as f64;
-        serial + shared + self.wake * (threads as f64).log2()
+        let StepParts { transpose, chunks, .. } = self.step;
+        let chunked = self.step.chunked() / chunks as f64 * chunks.div_ceil(threads) as f64;
+        transpose + self.step.spanned() / threads as f64 + chunked + self.wake * (threads as f64).log2()
     }
 
     /// Environment steps a second that so many threads are predicted to train.
@@ -84,8 +84,8 @@ mod tests {
         let step = StepParts { whole: 10.0, transpose: 0.5, sum: 1.0, adam: 0.5, chunks: 4, ..StepParts::default() };
         let seen = [(1, 1.0), (2, 1.0)];
         let model = ThreadsModel { step, steps: 3, rollout: 8.0, tiles: 8, rest: 2.0, wake: 0.25, batch: 100, seen };
-        assert_eq!([1, 2, 3, 4, 16].map(|n| model.step_s(n)), [10.0, 6.25, 6.0 + 0.25 * 3f64.log2(), 4.5, 5.0]);
+        assert_eq!([1, 2, 3, 4, 16].map(|n| model.step_s(n)), [10.0, 5.5, 5.0 + 0.25 * 3f64.log2(), 3.375, 3.59375]);
         assert_eq!(model.predicted(1), 100.0 / (8.0 + 2.0 + 30.0));
-        assert_eq!(model.predicted(4), 100.0 / (2.0 + 2.0 + 3.0 * 4.5));
+        assert_eq!(model.predicted(4), 100.0 / (2.0 + 2.0 + 3.0 * 3.375));
     }
 }

@@ -46,7 +46,7 @@ fn tile<L: Lane<Elem = f32>, P: Precision<L>>(
     sums: &mut Sums<L>,
     gradient: &mut [f32],
 ) {
-    let Worker { x, actor, critic, mean, value } = worker;
+    let Worker { x, actor, critic, mean, value, turned } = worker;
     let (network, samples) = (job.network, rows.len() * LANES);
     let p = &network.parameters;
     match part {
@@ -57,7 +57,7 @@ fn tile<L: Lane<Elem = f32>, P: Precision<L>>(
     mlp::forward::<L, P>(&network.actor, p, samples, PITCH, x, actor, mean);
     mlp::forward::<L, P>(&network.critic, p, samples, PITCH, x, critic, value);
     if part == TilePart::ForwardAndBackward {
-        mlp::backward::<L, P>(&network.actor, p, &job.turned[0], samples, PITCH, x, actor, mean, gradient);
-        mlp::backward::<L, P>(&network.critic, p, &job.turned[1], samples, PITCH, x, critic, value, gradient);
+        mlp::backward::<L, P>(&network.actor, p, &turned[0], samples, PITCH, x, actor, mean, gradient);
+        mlp::backward::<L, P>(&network.critic, p, &turned[1], samples, PITCH, x, critic, value, gradient);
     }
 }

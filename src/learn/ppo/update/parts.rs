@@ -1,12 +1,13 @@
 //! What an optimiser step costs, part by part: each is repeated alone, on the calling thread.
 
-use super::{CHUNK_ROWS, Hyper, Updater};
-use crate::base::lane::{Kernel, LANES, Lane32, Level, dispatch};
+use super::span::spans;
+use super::{CHUNK_ROWS, Hyper, POISONED, Updater};
+use crate::base::lane::{Kernel, LANES, Lane32, Level, Portable, dispatch};
 use crate::base::stopwatch::best;
 use crate::learn::nn::aligned::Aligned;
 use crate::learn::nn::bf16::Bf16;
 use crate::learn::nn::gemm::Exact;
-use crate::learn::nn::{HIDDEN, Network, mlp};
+use crate::learn::nn::{HIDDEN, Network};
 use crate::learn::ppo::batch::Minibatch;
 use crate::learn::ppo::chunk::parts::{self, TilePart};
 use crate::learn::ppo::chunk::{Chunk, Job, Worker};
@@ -36,9 +37,14 @@ pub struct StepParts {
 }
 
 impl StepParts {
-    /// What one thread does while the others wait.
-    pub fn serial(&self) -> f64 {
-        self.transpose + self.sum + self.adam
+    /// What threads share whatever the number of chunks.
+    pub fn spanned(&self) -> f64 {
+        self.sum + self.adam
+    }
+
+    /// What threads share a chunk at a time.
+    pub fn chunked(&self) -> f64 {
+        (self.whole - self.transpose - self.spanned()).max(0.0)
     }
 }
 
@@ -66,13 +72,12 @@ pub fn measure(
     let whole = best(each, || updater.step(level, network, batch, rows, hyper));
     let mut worker = Worker::new(network);
     let mut chunk = Chunk::new(network);
-    let mut turned = [Aligned::zeros(HIDDEN * HIDDEN), Aligned::zeros(HIDDEN * HIDDEN)];
+    worker.turn::<Portable<f32>>(network);
     let mut hidden = Aligned::zeros(4 * HIDDEN * rows.len() * LANES);
     let share = 1.0 / (rows.len() * LANES) as f64;
     let mut one = |part: StepPart| {
         best(each, || {
-            let turned = &mut turned;
-            let at = PartAt { batch, rows, hyper, share, hidden: &mut hidden, turned, worker: &mut worker };
+            let at = PartAt { batch, rows, hyper, share, hidden: &mut hidden, worker: &mut worker };
             dispatch(level, RunPart { part, at, updater, network, gradient: &mut chunk.gradient })
         })
     };
@@ -98,7 +103,6 @@ struct PartAt<'a> {
     hyper: &'a Hyper,
     share: f64,
     hidden: &'a mut [f32],
-    turned: &'a mut [Aligned<f32>; 2],
     worker: &'a mut Worker<f32>,
 }
 
@@ -115,10 +119,10 @@ impl Kernel for RunPart<'_> {
     #[inline(always)]
     fn run<L: Lane32>(self) {
         let Self { part, at, updater, network, gradient } = self;
-        let PartAt { batch, rows, hyper, share, hidden, turned, worker } = at;
+        let PartAt { batch, rows, hyper, share, hidden, worker } = at;
         match part {
             StepPart::Tile(part) => {
-                let job = Job { network, turned, batch, weights: &hyper.weights, share };
+                let job = Job { network, batch, weights: &hyper.weights, share };
                 match hyper.precision {
                     ProductPrecision::F32 => parts::run::<L, Exact>(part, &job, rows, worker, gradient),
                     ProductPrecision::Bf16 => parts::run::<L, Bf16>(part, &job, rows, worker, gradient),
@@ -128,18 +132,20 @@ impl Kernel for RunPart<'_> {
                 #[inline(always)]
                 || hidden.chunks_exact_mut(LANES).for_each(|h| L::from_slice(h).tanh().write(h)),
             ),
-            StepPart::Transpose => {
-                for (shape, turned) in [&network.actor, &network.critic].into_iter().zip(turned) {
-                    L::vectorize(
-                        #[inline(always)]
-                        || mlp::turn::<L>(shape, &network.parameters, turned),
-                    );
+            StepPart::Transpose => worker.turn::<L>(network),
+            StepPart::Sum | StepPart::Adam => {
+                let Updater { adam, gradient, next, chunks, .. } = updater;
+                let rates = adam.advance(hyper.learning_rate, hyper.adam_epsilon);
+                let mut all = spans(1, gradient, adam, next);
+                let span = all[0].get_mut().expect(POISONED);
+                if matches!(part, StepPart::Adam) {
+                    return span.descend::<L>(&rates, &network.parameters, 1.0);
                 }
+                for (number, chunk) in chunks.iter_mut().enumerate() {
+                    span.add::<L>(number, &chunk.get_mut().expect(POISONED).gradient);
+                }
+                std::hint::black_box(span.squares(L::zero()).sum());
             }
-            StepPart::Sum => {
-                updater.reduce::<L>(network, hyper.weights.entropy);
-            }
-            StepPart::Adam => updater.descend::<L>(network, hyper, 1.0),
         }
     }
 }
