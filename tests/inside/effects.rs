@@ -161,7 +161,7 @@ fn a_vehicle_file_keeps_its_effects() {
     let again: Vehicle = toml::from_str(&toml::to_string(&vehicle).expect("TOML")).expect("itself");
     assert_eq!(again, vehicle);
     let numbers = Extended::new(&vehicle, &Factors::NOMINAL, DT).values.numbers;
-    assert_eq!(numbers[effects::span("axial_inflow").expect("listed")], [0.5]);
+    assert_eq!(numbers[effects::span("axial_inflow").expect("listed")], [0.5, 0.0]);
     assert_eq!(numbers[effects::span("steady_wind").expect("listed")], [1.5, -2.0]);
     assert_eq!(numbers.iter().filter(|k| **k != 0.0).count(), 3);
     assert_eq!(load("\n[effects.sizes.axial_inflow]\nk = 0.5\n").expect("alone").effects.sizes.len(), 1);
@@ -172,7 +172,7 @@ fn a_vehicle_file_with_wrong_effects_is_refused() {
     for (text, parts) in [
         ("[effects.sizes.axial_outflow]\nk = 0.5", ["axial_outflow", "axial_inflow"]),
         ("[effects.sizes.gyro_bias]\nx = 0.01", ["gyro_bias", "do not belong to a vehicle"]),
-        ("[effects.sizes.axial_inflow]\ngain = 0.5", ["effects.sizes.axial_inflow.gain", "one of k"]),
+        ("[effects.sizes.axial_inflow]\ngain = 0.5", ["effects.sizes.axial_inflow.gain", "one of k, across"]),
         ("[effects.sizes.axial_inflow]\nk = 4.5", ["effects.sizes.axial_inflow.k", "0 to 4 1/s"]),
         ("[effects.sizes.axial_inflow]\nk = -0.5", ["effects.sizes.axial_inflow.k", "-0.5"]),
         ("[effects.sizes.axial_inflow]\nk = nan", ["effects.sizes.axial_inflow.k", "NaN"]),
@@ -399,6 +399,9 @@ fn forces_follow_the_equations() {
         ("vertical_drag", &[0.02, 0.04, 0.0], 2, 0.0),
         ("vertical_drag", &[0.2, 0.04, 0.5], 2, -(0.2 - 0.04) * (vz + 0.5 * vz.abs())),
         ("vertical_drag", &[0.2, 0.04, -vz.signum()], 2, 0.0),
+        ("vertical_drag", &[0.2, 0.0, 0.0, 0.01], 2, -(0.2 + 0.01 * speed) * vz),
+        ("axial_inflow", &[0.5, 0.01], 2, -(0.5 * throttle + 0.01 * speed) * vz),
+        ("axial_inflow", &[0.5, -1.0], 2, 0.0),
         ("translational_lift", &[0.01, 0.004], 2, 0.014 * vx * vx + 0.006 * vy * vy),
         ("drag_asymmetry", &[0.005, 0.5], 0, -0.005 * vx.abs() * (0.5 * vx.abs() + 0.5 * askew)),
     ] {

@@ -8,7 +8,7 @@ use super::problem::Problem;
 use super::size::is_bounded;
 use super::whiten::Whitener;
 use crate::insight::criteria::evident::{
-    BOUNDED_MERIT, EVIDENCE_WORTH_A_FIT, FORM_GAIN, GAIN_WORTH_A_FIT, LEAST_GAIN, RARE_GAIN, SHORT_LIST,
+    BOUNDED_MERIT, EVIDENCE_WORTH_A_FIT, FORM_GAIN, FORM_TOLD, GAIN_WORTH_A_FIT, LEAST_GAIN, RARE_GAIN, SHORT_LIST,
 };
 use crate::insight::criteria::rival::TIE_DEVIATIONS;
 use crate::model::effects::{Card, EffectKind, are_rivals};
@@ -89,6 +89,11 @@ fn chosen(found: &[Candidate], order: &[(usize, f64, f64)]) -> Vec<usize> {
     chosen
 }
 
+/// What a form has to gain beside an effect that gains so much.
+pub fn form_gain(of_effect: f64) -> f64 {
+    (FORM_GAIN.get() * of_effect).clamp(LEAST_GAIN.get(), FORM_TOLD.get())
+}
+
 /// Steps after which the best of several starts is known.
 const GLANCE: usize = 2;
 
@@ -150,7 +155,7 @@ impl Trials<'_> {
             }
         };
         let mut best = fit::refit(self.problem, self.whitener, self.point, &own, &first);
-        let least = LEAST_GAIN.get().max(FORM_GAIN.get() * (self.point.total() - best.total()));
+        let least = form_gain(self.point.total() - best.total());
         loop {
             let with = |&k: &usize| {
                 let all = [&own[..], &[k]].concat();

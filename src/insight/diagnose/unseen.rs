@@ -100,12 +100,16 @@ pub fn deviations(differences: &[f64]) -> f64 {
     differences.iter().sum::<f64>() / differences.iter().map(|d| d * d).sum::<f64>().sqrt().max(1e-300)
 }
 
-/// By which share the error rises from `before` to `after`, where it does beyond chance.
+/// By which share the error rises from `before` to `after`, where it does beyond chance: by all that stretches of time
+/// gain or lose, or by the share of each, which three fast passes of a flight do not outweigh.
 pub fn rise(before: &[f64], after: &[f64]) -> Option<f64> {
-    let differences: Vec<f64> = after.iter().zip(before).map(|(a, b)| a - b).collect();
+    let of = |unit: fn(f64, f64) -> f64| -> Vec<f64> {
+        before.iter().zip(after).map(|(&b, &a)| (a - b) / unit(a, b).max(1e-300)).collect()
+    };
+    let surely = deviations(&of(|_, _| 1.0)).max(deviations(&of(f64::max)));
     let [before, after] = [before, after].map(|x| x.iter().sum::<f64>());
     let by = (after / before.max(1e-300)).sqrt() - 1.0;
-    (by > WORSE_SHARE.get() && deviations(&differences) > WORSE_DEVIATIONS.get()).then_some(by)
+    (by > WORSE_SHARE.get() && surely > WORSE_DEVIATIONS.get()).then_some(by)
 }
 
 #[cfg(test)]
@@ -125,6 +129,9 @@ mod tests {
         let mut once = before;
         once[3] = 4.0;
         assert!(rise(&before, &once).is_none());
+        let mut most = [1.1; 20];
+        most[3] = 4.0;
+        assert!(rise(&before, &most).is_some(), "one that rises much makes the others no less sure");
         assert!(rise(&before, &[1.01; 20]).is_none(), "half a percent of the error is nothing");
     }
 }

@@ -1,6 +1,7 @@
-//! Drag along the thrust: f_z -= (1 +- climb) (k + square (|v_z| - 5 m/s)) v_z, never less than none. At `square` = 0
-//! it goes with the speed, at `square` = k / (5 m/s) with its square, as a plate's, and below 0 it grows less than the
-//! speed. By the share `climb` it is more in climbs and less in descents; at 1 only climbs are braked.
+//! Drag along the thrust: f_z -= (1 +- climb) (k + square (|v_z| - 5 m/s) + across v_h) v_z, never less than none. At
+//! `square` = 0 it goes with the speed, at `square` = k / (5 m/s) with its square, as a plate's, and below 0 it grows
+//! less than the speed. With `across` the flow from the side counts as well. By the share `climb` it is more in climbs
+//! and less in descents; at 1 only climbs are braked.
 
 use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
@@ -20,8 +21,9 @@ impl Effect for VerticalDrag {
             EffectParameter { name: "k", unit: "1/s", low: 0.0, high: 0.9, typical: [0.05, 0.3] },
             EffectParameter { name: "square", unit: "1/m", low: -0.1, high: 0.2, typical: [0.01, 0.06] },
             EffectParameter { name: "climb", unit: "1", low: -1.0, high: 1.0, typical: [0.2, 1.0] },
+            EffectParameter { name: "across", unit: "1/m", low: -0.1, high: 0.2, typical: [0.01, 0.06] },
         ],
-        forms: &[1, 2],
+        forms: &[1, 2, 3],
         writes: &[Quantity::SpecificForce],
         reads: &[Quantity::Velocity],
         channels: &[ResidualChannel::Force],
@@ -33,8 +35,9 @@ impl Effect for VerticalDrag {
 
     #[inline(always)]
     fn aerodynamic_forces<R: Real>(k: &[R], forces: &mut AerodynamicForces<R>) {
-        let z = forces.velocity[2];
-        let slope = k[1].mul_add(z.abs() - R::of(AT), k[0]).max(R::zero());
+        let [x, y, z] = forces.velocity;
+        let across = x.mul_add(x, y * y).sqrt();
+        let slope = k[1].mul_add(z.abs() - R::of(AT), k[3].mul_add(across, k[0])).max(R::zero());
         forces.force[2] = forces.force[2] - slope * k[2].mul_add(z.abs(), z);
     }
 }
