@@ -8,6 +8,9 @@ is identified from all flights but the last, and they are diagnosed against it; 
 flight (`racer predict`), and the extended one is trained for a moment. A line each: what was named, with its size and
 95 % interval, and for every signal of the unseen flight the error (RMS) of both vehicles. Of a set of one flight there
 is no unseen one.
+
+A diagnosis leaves its own last flight out, so that one flight more is given up by this. So all flights are diagnosed as
+well ("all"): the errors on the last one are then the diagnosis' own, of a fit to as many flights as the base has.
 """
 
 import csv
@@ -51,12 +54,29 @@ def predicted(racer, log, vehicles, cwd):
         yield [channel["name"], channel["unit"], *(f"{score['rmse']:.4g}" for score in channel["scores"])]
 
 
+def diagnosed(racer, logs, name, cwd):
+    wanted = ["--vehicle", "base.toml", "--json", f"{name}.json", "--extend", f"{name}.toml"]
+    ran = run(racer, "diagnose", *logs, *wanted, cwd=cwd, may_fail=True)
+    return json.loads((cwd / f"{name}.json").read_text()), ran
+
+
+def with_all(racer, logs, cwd):
+    found, _ = diagnosed(racer, logs, "all", cwd)
+    for what, unit, value, low, high in named(found["findings"]):
+        yield "named of all", what, unit, value, low, high
+    written = int((cwd / "all.toml").exists())
+    yield "vehicle of all", found.get("not_extended") or "all.toml", "", written, "", ""
+    for name, error in found["held_out"].items():
+        if name.split()[0] not in ("turn", "push"):
+            yield "held out of all", name, error["unit"], f"{error['before']:.4g}", f"{error['after']:.4g}", ""
+
+
 def one(racer, logs, options, cwd):
     known = logs[:-1] or logs
     run(racer, "identify", *known, *options, "--partial", "--out", "base.toml", cwd=cwd)
-    wanted = ["--vehicle", "base.toml", "--json", "d.json", "--extend", "x.toml"]
-    ran = run(racer, "diagnose", *known, *wanted, cwd=cwd, may_fail=True)
-    found = json.loads((cwd / "d.json").read_text())
+    if len(logs) > 1:
+        yield from with_all(racer, logs, cwd)
+    found, ran = diagnosed(racer, known, "x", cwd)
     for what, unit, value, low, high in named(found["findings"]):
         yield "named", what, unit, value, low, high
     if not (cwd / "x.toml").exists():

@@ -18,6 +18,8 @@ criteria! {
     WORSE_DEVIATIONS = 2.0, Theory("one in forty by chance; what is tried first then costs no name");
     /// Rise of a channel's error on unseen flight, as a share, that is worse.
     WORSE_SHARE = 0.01, Assumed("a hundredth of the error is worth no word");
+    /// Rise from which it is worse as well where stretches of time are by the share of each.
+    MUCH_WORSE_SHARE = 0.05, Assumed("less is left to the stretches with the largest errors");
     /// Share of a sensor's error that attitude and velocity have to show by themselves.
     KINEMATIC_SHARE = 0.5, Assumed("kinematics do not depend on the model of the vehicle; half allows for their noise");
     /// Standard deviations by which they have to show less.

@@ -64,49 +64,84 @@ impl Predicted {
         self.clone().recomputed(dirty, model, record, flight, x)
     }
 
-    fn recomputed(self, dirty: Quantities, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
+    fn recomputed(mut self, dirty: Quantities, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
+        let p = model.parameters(x);
         // One body for every processor: a fused multiply-add is an instruction there, and a call of
         // a function elsewhere.
-        fused(
-            #[inline(always)]
-            || self.recompute(dirty, model, record, flight, x),
-        )
-    }
-
-    #[inline(always)]
-    fn recompute(mut self, dirty: Quantities, model: &Model, record: &FlightRecord, flight: usize, x: &[f64]) -> Self {
-        let p = model.parameters(x);
         if dirty.any(&[Quantity::RateCommand, Quantity::ThrustCommand]) {
-            let ActuatorResponse { command, lag, setpoint } = actuator_response(&p, record, model, x, 0.0);
+            let ActuatorResponse { command, lag, setpoint } = fused(
+                #[inline(always)]
+                || actuator_response(&p, record, model, x, 0.0),
+            );
             (self.command, self.lag, self.setpoint) = (command.into(), lag.into(), setpoint.into());
         }
-        if dirty.any(&[Quantity::BodyRates, Quantity::GyroTime]) {
-            let offset = model.acting(x, Role::GyroLate);
-            self.rates = body_rates(&p, record, &self.command).into();
-            self.seen_rates = if offset == 0.0 {
-                self.rates.clone()
-            } else {
-                body_rates(&p, record, &actuator_response(&p, record, model, x, offset).command).into()
-            };
+        if !dirty.has(Quantity::Integrated) {
+            self.read(&p, dirty, model, record, flight, x);
+            return self;
         }
-        if dirty.has(Quantity::Voltage) {
-            self.discharge(&p, record, x[BEGIN + flight]);
-            self.channels[VOLTAGE] = record.volts.iter().map(|(i, _)| self.modelled_v[*i]).collect::<Vec<_>>().into();
-        }
-        if dirty.has(Quantity::SpecificForce) {
-            let lag = [model.acting(x, Role::VelocityLag), model.vehicle().gravity_m_s2];
-            self.push(&p, record, lag);
-            self.bend_thrust(model, record, x);
-        }
-        if dirty.any(&[Quantity::Gyro, Quantity::Accelerometer]) {
-            self.sense(&p, dirty, model, record, x);
-        }
-        if dirty.has(Quantity::Integrated) {
-            self.shifted = ShiftedImu::renewed(self.shifted, record, kinematics::offsets(model, record, x));
-            let all = kinematics::integrate(model, record, x, &self.command, &self.shifted);
-            all.into_iter().enumerate().for_each(|(c, values)| self.channels[TURN + c] = values.into());
-        }
+        // What the IMU's readings are, and what they integrate to, depend on the commands alone.
+        let (shifted, command) = (self.shifted.clone(), self.command.clone());
+        let ((), (shifted, integrated)) = rayon::join(
+            || self.read(&p, dirty, model, record, flight, x),
+            || {
+                fused(
+                    #[inline(always)]
+                    || {
+                        let shifted = ShiftedImu::renewed(shifted, record, kinematics::offsets(model, record, x));
+                        let integrated = kinematics::integrate(model, record, x, &command, &shifted);
+                        (shifted, integrated)
+                    },
+                )
+            },
+        );
+        self.shifted = shifted;
+        integrated.into_iter().enumerate().for_each(|(c, values)| self.channels[TURN + c] = values.into());
         self
+    }
+
+    /// What the IMU and the voltmeter read.
+    fn read(
+        &mut self,
+        p: &Extended<f64>,
+        dirty: Quantities,
+        model: &Model,
+        record: &FlightRecord,
+        flight: usize,
+        x: &[f64],
+    ) {
+        fused(
+            #[inline(always)]
+            || {
+                if dirty.any(&[Quantity::BodyRates, Quantity::GyroTime]) {
+                    self.turn(p, model, record, x);
+                }
+                if dirty.has(Quantity::Voltage) {
+                    self.discharge(p, record, x[BEGIN + flight]);
+                    let seen = record.volts.iter().map(|(i, _)| self.modelled_v[*i]);
+                    self.channels[VOLTAGE] = seen.collect::<Vec<_>>().into();
+                }
+                if dirty.has(Quantity::SpecificForce) {
+                    let lag = [model.acting(x, Role::VelocityLag), model.vehicle().gravity_m_s2];
+                    self.push(p, record, lag);
+                    self.bend_thrust(model, record, x);
+                }
+                if dirty.any(&[Quantity::Gyro, Quantity::Accelerometer]) {
+                    self.sense(p, dirty, model, record, x);
+                }
+            },
+        );
+    }
+
+    /// Body rates, and as a late gyro shows them.
+    #[inline(always)]
+    fn turn(&mut self, p: &Extended<f64>, model: &Model, record: &FlightRecord, x: &[f64]) {
+        let offset = model.acting(x, Role::GyroLate);
+        self.rates = body_rates(p, record, &self.command).into();
+        self.seen_rates = if offset == 0.0 {
+            self.rates.clone()
+        } else {
+            body_rates(p, record, &actuator_response(p, record, model, x, offset).command).into()
+        };
     }
 
     /// Modelled voltage, and that with its slow error taken off, which thrust sees.

@@ -107,7 +107,7 @@ impl Problem {
     /// Predicts every flight at `x`.
     pub fn predict(&self, x: &[f64]) -> Predictions {
         let one = |(f, record)| Predicted::new(&self.model, record, f, &self.numbers(f, x));
-        self.records.iter().enumerate().map(one).collect()
+        self.records.par_iter().enumerate().map(one).collect()
     }
 
     /// Predicts at `x`, which differs from that of `state` in the numbers `which`.
@@ -118,7 +118,7 @@ impl Problem {
             let which: Vec<usize> = which.iter().copied().filter(reaches).collect();
             state[f].changed(self.model.dirty(&which, &x), &self.model, record, f, &x)
         };
-        self.records.iter().enumerate().map(one).collect()
+        self.records.par_iter().enumerate().map(one).collect()
     }
 
     /// A prediction's rows.

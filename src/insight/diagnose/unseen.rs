@@ -5,7 +5,7 @@ use super::fit::{FitPoint, costs, fit};
 use super::numbers::BEGIN;
 use super::problem::Problem;
 use super::whiten::Whitener;
-use crate::insight::criteria::unseen::{WORSE_DEVIATIONS, WORSE_SHARE};
+use crate::insight::criteria::unseen::{MUCH_WORSE_SHARE, WORSE_DEVIATIONS, WORSE_SHARE};
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use nalgebra::DMatrix;
@@ -101,15 +101,16 @@ pub fn deviations(differences: &[f64]) -> f64 {
 }
 
 /// By which share the error rises from `before` to `after`, where it does beyond chance: by all that stretches of time
-/// gain or lose, or by the share of each, which three fast passes of a flight do not outweigh.
+/// gain or lose, or, where it rises much, by the share of each, which three fast passes of a flight do not outweigh.
 pub fn rise(before: &[f64], after: &[f64]) -> Option<f64> {
     let of = |unit: fn(f64, f64) -> f64| -> Vec<f64> {
         before.iter().zip(after).map(|(&b, &a)| (a - b) / unit(a, b).max(1e-300)).collect()
     };
-    let surely = deviations(&of(|_, _| 1.0)).max(deviations(&of(f64::max)));
-    let [before, after] = [before, after].map(|x| x.iter().sum::<f64>());
-    let by = (after / before.max(1e-300)).sqrt() - 1.0;
-    (by > WORSE_SHARE.get() && surely > WORSE_DEVIATIONS.get()).then_some(by)
+    let [sum_before, sum_after] = [before, after].map(|x| x.iter().sum::<f64>());
+    let by = (sum_after / sum_before.max(1e-300)).sqrt() - 1.0;
+    let surely = |differences: &[f64]| deviations(differences) > WORSE_DEVIATIONS.get();
+    let worse = by > WORSE_SHARE.get() && surely(&of(|_, _| 1.0));
+    (worse || by > MUCH_WORSE_SHARE.get() && surely(&of(f64::max))).then_some(by)
 }
 
 #[cfg(test)]
