@@ -10,6 +10,8 @@ pub mod lane;
 pub mod memory;
 pub mod peak;
 pub mod rng;
+pub mod round_trip;
 pub mod stats;
 pub mod stopwatch;
 pub mod threads;
+pub mod wait;

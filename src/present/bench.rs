@@ -7,6 +7,7 @@ pub mod threads;
 use crate::base::lane::bf16::Bf16Unit;
 use crate::base::lane::{Kernel, LANES, Lane32, Level, dispatch, each};
 use crate::base::peak;
+use crate::base::round_trip::round_trip_s;
 use crate::base::stopwatch::best;
 use crate::learn::nn::{HIDDEN, TILE_BLOCKS};
 use crate::learn::policy::ACTIONS;
@@ -66,6 +67,8 @@ pub struct BenchFigures {
     pub training_peak_share_one_thread: f64,
     /// Operations of one environment step of training.
     pub training_flops_per_step: f64,
+    /// In which a number goes from one thread to another and back, s.
+    pub round_trip_s: f64,
     pub threads: usize,
     pub simd: String,
 }
@@ -134,6 +137,7 @@ pub fn measure(
         training_peak_share: peak_shares.training.all_threads,
         training_peak_share_one_thread: peak_shares.training.one_thread,
         training_flops_per_step: flops,
+        round_trip_s: round_trip_s(),
         threads,
         simd: match config.ppo.precision {
             ProductPrecision::F32 => level.to_string(),

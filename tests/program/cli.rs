@@ -272,6 +272,7 @@ fn bench_has_the_keys_that_it_promises() {
     }
     assert!(figures["peak_flops_per_s"].as_f64().unwrap() > 0.0);
     assert!((0.0..=1.0).contains(&figures["training_peak_share"].as_f64().unwrap()));
+    assert!(figures["round_trip_s"].as_f64().unwrap() > 0.0);
     assert_eq!(figures["threads"], 2);
     assert!(figures["simd"].is_string());
 }

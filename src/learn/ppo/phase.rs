@@ -1,9 +1,7 @@
 //! A short job that the threads at hand share.
 
+use crate::base::wait::wait;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Looks for the others' end before the processor is offered to others: some tens of microseconds.
-const PATIENCE: usize = 1024;
 
 /// Parts of a job, which free threads take in their order, and its end, for which all wait awake: a pool that waits
 /// asleep takes as long to wake as half a small minibatch does. A thread that comes late finds nothing to do.
@@ -39,18 +37,5 @@ struct Done<'a>(&'a AtomicUsize);
 impl Drop for Done<'_> {
     fn drop(&mut self) {
         self.0.fetch_add(1, Ordering::Release);
-    }
-}
-
-/// Waits for what another thread is at.
-pub fn wait(done: impl Fn() -> bool) {
-    let mut looks = 0;
-    while !done() {
-        looks += 1;
-        if looks % PATIENCE == 0 {
-            std::thread::yield_now();
-        } else {
-            std::hint::spin_loop();
-        }
     }
 }
