@@ -46,8 +46,9 @@ pub fn threads(model: &ThreadsModel) -> String {
     let share = |s: f64| 100.0 * s / iteration;
     format!(
         "Training speed by a model. Of an iteration on one thread {:.1} % is the rollout ({} tiles of {TILE_SAMPLES} \
-         environments to share), {:.1} % the {} chunks of steps to share, {:.1} % sums and Adam, shared by any number, {:.1} % \
-         what one thread does alone. A doubling of the threads costs a step {:.1} us of waiting.\n{table}",
+         environments to share), {:.1} % the {} chunks of steps to share, {:.1} % sums and Adam, shared by any \
+         number, {:.1} % what one thread does alone. A doubling of the threads costs a step {:.1} us of waiting.\n\
+         {table}",
         share(model.rollout),
         model.tiles,
         share(model.steps as f64 * model.step.chunked()),

@@ -12,7 +12,7 @@ use super::batch::Minibatch;
 use super::chunk::{Chunk, Job, Worker};
 use super::config::ProductPrecision;
 use super::loss::{TERMS, Weights};
-use super::phase::Phase;
+use super::shared_parts::SharedParts;
 use crate::base::lane::{Kernel, LANES, Lane, Lane32, Level, Real, dispatch};
 use crate::base::wait::wait;
 use crate::learn::nn::Network;
@@ -148,7 +148,7 @@ impl<E: Real<Mask = bool> + PartialOrd + Default + Into<f64>> Updater<E> {
         let spans = spans(workers.len(), gradient, adam, next);
         let squares: Vec<OnceLock<L>> = spans.iter().map(|_| OnceLock::new()).collect();
         let norm = || squares.last().and_then(OnceLock::get).expect("summed").sum().into().sqrt();
-        let [chunked, summed, stepped] = [chunks.len(), spans.len(), spans.len()].map(Phase::new);
+        let [chunked, summed, stepped] = [chunks.len(), spans.len(), spans.len()].map(SharedParts::new);
         // Which thread does a part makes no difference to its result.
         workers.par_iter_mut().with_max_len(1).for_each(|worker| {
             worker.turn::<L>(network);

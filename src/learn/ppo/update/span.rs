@@ -6,7 +6,7 @@ use crate::learn::nn::adam::{Adam, Rates};
 use std::ops::Range;
 use std::sync::Mutex;
 
-pub struct Span<'a, E> {
+pub struct ParameterSpan<'a, E> {
     /// Its place among the parameters; it begins with a block.
     from: usize,
     /// The minibatch's gradient, before clipping.
@@ -23,7 +23,7 @@ pub fn spans<'a, E>(
     gradient: &'a mut [E],
     adam: &'a mut Adam<E>,
     next: &'a mut [E],
-) -> Vec<Mutex<Span<'a, E>>>
+) -> Vec<Mutex<ParameterSpan<'a, E>>>
 where
     E: Copy + Default,
 {
@@ -31,12 +31,12 @@ where
     let moments = adam.first.chunks_mut(len).zip(adam.second.chunks_mut(len));
     let rest = gradient.chunks_mut(len).zip(next.chunks_mut(len)).zip(moments).enumerate();
     rest.map(|(i, ((gradient, next), (first, second)))| {
-        Mutex::new(Span { from: i * len, gradient, first, second, next })
+        Mutex::new(ParameterSpan { from: i * len, gradient, first, second, next })
     })
     .collect()
 }
 
-impl<E: Real<Mask = bool> + PartialOrd + Default> Span<'_, E> {
+impl<E: Real<Mask = bool> + PartialOrd + Default> ParameterSpan<'_, E> {
     /// Takes chunk `number`'s gradient `from` to those of the chunks before.
     pub fn add<L: Lane<Elem = E>>(&mut self, number: usize, from: &[E]) {
         let from = &from[self.from..self.from + self.gradient.len()];

@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Parts of a job, which free threads take in their order, and its end, for which all wait awake: a pool that waits
 /// asleep takes as long to wake as half a small minibatch does. A thread that comes late finds nothing to do.
-pub struct Phase {
+pub struct SharedParts {
     parts: usize,
     next: AtomicUsize,
     done: AtomicUsize,
 }
 
-impl Phase {
+impl SharedParts {
     pub fn new(parts: usize) -> Self {
         Self { parts, next: AtomicUsize::new(0), done: AtomicUsize::new(0) }
     }
