@@ -39,3 +39,32 @@ impl Drop for Done<'_> {
         self.0.fetch_add(1, Ordering::Release);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    #[test]
+    fn each_part_is_done_once_before_anybody_goes_on() {
+        let (parts, count) = (SharedParts::new(1000), AtomicUsize::new(0));
+        let one = || {
+            parts.share(|_| {
+                count.fetch_add(1, Ordering::Relaxed);
+            });
+            assert_eq!(count.load(Ordering::Relaxed), 1000);
+        };
+        std::thread::scope(|scope| (0..4).for_each(|_| drop(scope.spawn(one))));
+    }
+
+    #[test]
+    fn a_part_that_panics_keeps_nobody_waiting() {
+        let parts = SharedParts::new(8);
+        let all = |_| catch_unwind(AssertUnwindSafe(|| parts.share(|part| assert_ne!(part, 3)))).is_err();
+        let failed = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..2).map(|i| scope.spawn(move || all(i))).collect();
+            threads.into_iter().map(|thread| thread.join().expect("caught")).filter(|failed| *failed).count()
+        });
+        assert_eq!(failed, 1);
+    }
+}
