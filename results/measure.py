@@ -32,6 +32,8 @@ COMMANDS = {
                        "--csv results/against-seed15.csv"),
     "against-seed18": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 18 --jobs 2 "
                        "--csv results/against-seed18.csv"),
+    "against-seed20": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 20 --jobs 2 "
+                       "--csv results/against-seed20.csv"),
     "against-seed16": ([], "0.5 h", f"{BENCH} --against --n 40 --seconds 60 --seed 16 --jobs 2 "
                        "--csv results/against-seed16.csv"),
     "measured": (["logs"], "5 min", "python3 tests/python/measured_flights.py target/release/racer {logs} "
