@@ -91,7 +91,7 @@ fn chosen(found: &[Candidate], order: &[(usize, f64, f64)]) -> Vec<usize> {
 
 /// What a form has to gain beside an effect that gains so much.
 pub fn form_gain(of_effect: f64) -> f64 {
-    (FORM_GAIN.get() * of_effect).clamp(LEAST_GAIN.get(), FORM_TOLD.get())
+    (FORM_GAIN.get() * of_effect).min(FORM_TOLD.get()).max(LEAST_GAIN.get())
 }
 
 /// Steps after which the best of several starts is known.
