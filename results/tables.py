@@ -305,16 +305,20 @@ def measured_names():
     return table(["set", "named", "size (95 %)"], map(of, rows("measured-flights", kind="named")))
 
 
-def measured_unseen():
-    """Errors on the flight that was not used, of the base vehicle and of the extended one."""
+def measured_errors(kind, before):
+    """Errors on a flight that was not used, of a model without what was named and of the extended vehicle."""
     of = lambda r: (r["set"], r["what"], r["value"], r["low"], r["unit"])
-    return table(["set", "signal", "base", "extended", ""], map(of, rows("measured-flights", kind="base and extended")))
+    return table(["set", "signal", before, "extended", ""], map(of, rows("measured-flights", kind=kind)))
+
+
+def measured_unseen():
+    """Those on the flight that nothing has seen."""
+    return measured_errors("base and extended", "base")
 
 
 def measured_all():
-    """The same where the diagnosis of all flights leaves the last one out by itself."""
-    of = lambda r: (r["set"], r["what"], r["value"], r["low"], r["unit"])
-    return table(["set", "signal", "compact fit", "extended", ""], map(of, rows("measured-flights", kind="held out of all")))
+    """Those where the diagnosis of all flights leaves the last one out by itself."""
+    return measured_errors("held out of all", "compact fit")
 
 
 def judgement(pair):

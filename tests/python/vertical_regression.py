@@ -26,8 +26,9 @@ def load(path):
 
 def columns(log, drag, offset):
     v, w, a = ([log[f"{name}_{axis}"] for axis in "xyz"] for name in ("velbody", "angvel", "angacc"))
-    along = v[2] * np.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) if drag == "v_z |v|" else v[2]
-    out = [sum(log[f"mot{i}_radps"] ** 2 for i in range(1, 5)) * 1e-6, v[0] ** 2, v[1] ** 2, along]
+    across = np.hypot(v[0], v[1])
+    along = {"v_z": [v[2]], "v_z |v|": [v[2] * np.hypot(across, v[2])], "v_z and v_z v_h": [v[2], v[2] * across]}
+    out = [sum(log[f"mot{i}_radps"] ** 2 for i in range(1, 5)) * 1e-6, v[0] ** 2, v[1] ** 2, *along[drag]]
     if offset:
         out += [w[0] * w[2] - a[1], w[1] * w[2] + a[0], -(w[0] ** 2) - w[1] ** 2]
     return np.column_stack(out)
@@ -35,7 +36,7 @@ def columns(log, drag, offset):
 
 def main():
     logs = [load(Path(sys.argv[1]) / f"neurobem_{name}.csv.gz") for name in [*FITTED, UNSEEN]]
-    for drag, offset in [("v_z", False), ("v_z |v|", False), ("v_z |v|", True)]:
+    for drag, offset in [("v_z", False), ("v_z |v|", False), ("v_z |v|", True), ("v_z and v_z v_h", True)]:
         each = [columns(log, drag, offset) for log in logs]
         force = np.concatenate([log["acc_z"] for log in logs[:-1]])
         sizes = np.linalg.lstsq(np.vstack(each[:-1]), force, rcond=None)[0]

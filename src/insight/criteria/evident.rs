@@ -21,11 +21,11 @@ criteria! {
     /// Share of what an effect gains that its form has to gain beside it.
     FORM_GAIN = 0.2, Assumed("the form of what hardly shows is not told, and is extrapolated where a size is not");
     /// Fall of the whitened squares for which a form is told, whatever its effect gains.
-    FORM_TOLD = 400.0, Assumed("what is worth keeping without a size that matters");
+    FORM_TOLD = 400.0, Assumed("as NUISANCE_GAIN; one that does not pay on unseen flight is given up again");
     /// Candidates that are fitted in a round, besides rivals.
     SHORT_LIST = 6.0, Assumed("a fit is a hundred times as dear as a score");
     /// Effects that are added at most.
-    MOST_EFFECTS = 12.0, Assumed("more than any flight has shown");
+    MOST_EFFECTS = 12.0, Assumed("eight were too few for a measured flight, whose ninth was its lift");
     /// Effects of the rates alone that are added at most, so that they leave room for others.
     MOST_RATE_EFFECTS = 4.0,
         Assumed("a rate loop has a delay, an order, a limit and an axis of its own; else it takes all places");

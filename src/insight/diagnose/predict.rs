@@ -79,7 +79,7 @@ impl Predicted {
             self.read(&p, dirty, model, record, flight, x);
             return self;
         }
-        // What the IMU's readings are, and what they integrate to, depend on the commands alone.
+        // What the sensors should read, and what the IMU's readings integrate to: neither needs the other.
         let (shifted, command) = (self.shifted.clone(), self.command.clone());
         let ((), (shifted, integrated)) = rayon::join(
             || self.read(&p, dirty, model, record, flight, x),
