@@ -83,15 +83,14 @@ fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch) -
         changes.retain(|c| c.cause != motor.cause);
         changes.push(motor);
     }
-    // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first. So
-    // does what is told from all others.
+    // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first, the
+    // surest of it before all, told from all others or not.
     let own = [Role::ConstantError, Role::ClockFast];
     let constant = |c: &Change| effects::card(c.cause).is_some_and(|card| own.contains(&card.role));
     let place = |c: &Change| match c.status {
         Status::Suspected => 0.0,
         _ if constant(c) => 1e9,
-        Status::NamedSet => 2e9,
-        Status::Named => 3e9,
+        Status::NamedSet | Status::Named => 2e9,
     };
     let rank = |c: &Change| c.deviations + place(c);
     changes.sort_by(|a, b| rank(b).total_cmp(&rank(a)));

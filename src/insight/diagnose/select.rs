@@ -168,8 +168,8 @@ impl<'a> Search<'a> {
         // Noise is what is left when everything is taken off that any cause could explain.
         for _ in 0..if first { 2 } else { 1 } {
             self.whitener = saturated(problem, &self.whitener, &self.point, &self.found);
-            let fit = if self.skewed && first { fit::stay } else { fit::fit };
-            self.point = fit(problem, &self.whitener, &self.point.x, &self.point.free);
+            let fit = if self.skewed && first { fit::stay_again } else { fit::again };
+            self.point = fit(problem, &self.whitener, &self.point);
             let whitener = &self.whitener;
             self.found.par_iter_mut().for_each(|c| c.white = whitener.apply(&c.change, &problem.rows));
         }
@@ -267,8 +267,7 @@ pub fn left_over(
     let sets = problem.sets();
     let each: Vec<DMatrix<f64>> = sets.iter().map(|out| together(&seen(&grams, out))).collect::<Option<_>>()?;
     let mut left = point.residual.clone();
-    let raw: Vec<ChannelValues> = point.free.par_iter().map(|&k| problem.slope(&point.state, &point.x, k)).collect();
-    for (j, column) in raw.iter().chain(found.iter().map(|c| &c.change)).enumerate() {
+    for (j, column) in point.slopes.iter().chain(found.iter().map(|c| &c.change)).enumerate() {
         for (c, column) in column.iter().enumerate() {
             for ((left, x), row) in left[c].iter_mut().zip(column).zip(&problem.rows[c]) {
                 let set = sets.iter().position(|out| !out[row.block as usize]).unwrap_or(0);
