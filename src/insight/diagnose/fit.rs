@@ -14,10 +14,9 @@ use std::sync::Arc;
 /// Steps with the same derivatives, and how often these are renewed.
 const CHORDS: usize = 4;
 const RENEWALS: usize = 3;
-/// Times that a step is halved.
-const HALVINGS: i32 = 5;
-/// A step that lowers the whitened squares by less than this ends the fit.
+/// A step that lowers the whitened squares by less than this ends the fit, and that of one that is only tried.
 const ENOUGH: f64 = 0.05;
+const ENOUGH_TRIED: f64 = 1.0;
 
 /// Where a fit stands, with everything linear about it.
 #[derive(Clone, Default)]
@@ -122,7 +121,8 @@ fn descended(problem: &Problem, whitener: &Whitener, mut at: FitPoint) -> FitPoi
             let from = next.as_ref().unwrap_or(&at);
             let whitened = whitener.apply(&from.residual, &problem.rows);
             let normal = normal(problem, &gram, &white, &whitened, &from.x, &at.free);
-            let Some(lower) = descend(problem, whitener, (&from.state, &from.x), &at.free, &normal, from.total())
+            let Some(lower) =
+                descend(problem, whitener, (&from.state, &from.x), &at.free, &normal, (from.total(), ENOUGH))
             else {
                 break;
             };
@@ -178,14 +178,15 @@ fn normal<'a>(
     Normal { matrix: gram, downhill, ridge, within: &[] }
 }
 
-/// The point a step away, halved until it is better; none where no part of the step is.
+/// The point a step away, or a part of it, that lowers the squares `before`; none where none does, or the step should
+/// by less than `least`.
 fn descend(
     problem: &Problem,
     whitener: &Whitener,
     from: (&Predictions, &[f64]),
     free: &[usize],
     normal: &Normal,
-    before: f64,
+    (before, least): (f64, f64),
 ) -> Option<FitPoint> {
     let (old, x) = from;
     let numbers = &problem.model.numbers;
@@ -200,7 +201,7 @@ fn descend(
         (point.total() + penalty(problem, free, &point.x), point)
     };
     let before = before + penalty(problem, free, x);
-    normal.descend(&at, Shorter::Halved(HALVINGS), before, squares).map(|(_, _, point)| point)
+    normal.descend(&at, Shorter::Parabola(least), before, squares).map(|(_, _, point)| point)
 }
 
 /// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken
@@ -235,10 +236,13 @@ pub fn refit_in(
         let gram = Grams::new(&white, &problem.rows, problem.blocks).sum;
         let whitened = whitener.apply(&at.residual, &problem.rows);
         let normal = normal(problem, &gram, &white, &whitened, &at.x, &free);
-        let Some(next) = descend(problem, whitener, (&at.state, &at.x), &free, &normal, at.total()) else { break };
+        let Some(next) = descend(problem, whitener, (&at.state, &at.x), &free, &normal, (at.total(), ENOUGH_TRIED))
+        else {
+            break;
+        };
         let gained = at.total() - next.total();
         at = next;
-        if gained < 1.0 {
+        if gained < ENOUGH_TRIED {
             break;
         }
     }

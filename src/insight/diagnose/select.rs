@@ -99,8 +99,7 @@ pub struct Added {
 /// Adds effects until none is worth it.
 pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection {
     watch("fitting the base", 0.1);
-    let free = base_numbers(problem);
-    let mut search = Search::new(problem, free);
+    let mut search = Search::new(problem, &base_numbers(problem));
     let free = search.point.free.clone();
     let mut reach = Vec::new();
     let most = MOST_EFFECTS.count();
@@ -137,18 +136,14 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// The base alone, with those of the numbers `free` that the flights tell.
-    fn new(problem: &'a Problem, free: Vec<usize>) -> Self {
+    fn new(problem: &'a Problem, free: &[usize]) -> Self {
         let base = &problem.model.base;
         let state = problem.predict(base);
         let plain = problem.residuals(&state);
         let whitener = Whitener::plain(&plain, &problem.rows);
         let skewed =
             super::skew::estimate(problem, &state, &plain).is_some_and(|skew| skew.abs() > CLOCK_SKEW_SEEN.get());
-        let point = if skewed {
-            fit::stay(problem, &whitener, base, &free)
-        } else {
-            fit::fit(problem, &whitener, base, &told(problem, &whitener, free))
-        };
+        let point = if skewed { fit::stay(problem, &whitener, base, free) } else { told(problem, &whitener, free) };
         Search { problem, skewed, whitener, point, added: Vec::new(), pending: Vec::new(), found: Vec::new() }
     }
 
