@@ -118,7 +118,9 @@ impl Normal<'_> {
                         Err(now) => {
                             // before - 2 expected share + bend share^2 goes through both.
                             let bend = (now - before + 2.0 * expected * share) / (share * share);
-                            share *= (expected / bend / share).max(NEXT_SHARE[0]).min(NEXT_SHARE[1]);
+                            let next = expected / bend / share;
+                            // What is no number leads to the least.
+                            share *= if next > NEXT_SHARE[0] { next.min(NEXT_SHARE[1]) } else { NEXT_SHARE[0] };
                         }
                     }
                 }
@@ -156,6 +158,21 @@ mod tests {
                 let (values, ..) = normal.descend(&at, shorter, before, cost).unwrap();
                 assert!((0..2).all(|k| (values[k] - wanted[k]).abs() < 1e-6), "{values:?}");
             }
+        }
+    }
+
+    #[test]
+    fn a_step_that_is_four_times_too_long_takes_two_looks() {
+        let matrix = DMatrix::from_element(1, 1, 25.0);
+        let normal = Normal { matrix: &matrix, downhill: vec![25.0], ridge: vec![0.0], within: &[] };
+        let at = [Bounded { value: 0.0, low: -9.0, high: 9.0 }];
+        for (least, looks) in [(0.0, 2), (30.0, 0)] {
+            let mut looked = 0;
+            let found = normal.descend(&at, Shorter::Parabola(least), 6.25, |v| {
+                looked += 1;
+                (100.0 * (v[0] - 0.25).powi(2), ())
+            });
+            assert_eq!((found.map(|(values, ..)| values), looked), ((looks > 0).then(|| vec![0.25]), looks));
         }
     }
 
