@@ -35,6 +35,26 @@ pub struct FitPoint {
 }
 
 impl FitPoint {
+    /// The point `x`, whose prediction is `state`, with nothing linear about it.
+    fn new(problem: &Problem, whitener: &Whitener, x: Vec<f64>, state: Predictions) -> Self {
+        let residual = problem.residuals(&state);
+        let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
+        Self { x, state, free: Vec::new(), slopes: Arc::default(), white: Vec::new(), residual, cost }
+    }
+
+    /// The same with what is linear about the numbers `free`: their slopes, where those are known.
+    fn linear(
+        self,
+        problem: &Problem,
+        whitener: &Whitener,
+        free: &[usize],
+        known: Option<&Arc<Vec<ChannelValues>>>,
+    ) -> Self {
+        let slopes = known.cloned().unwrap_or_else(|| problem.slopes(&self.state, &self.x, free).into());
+        let white = slopes.par_iter().map(|slope| whitener.apply(slope, &problem.rows)).collect();
+        Self { free: free.to_vec(), slopes, white, ..self }
+    }
+
     pub fn total(&self) -> f64 {
         self.cost.iter().sum()
     }
@@ -65,28 +85,6 @@ fn prior(problem: &Problem, free: &[usize]) -> Vec<f64> {
 
 fn penalty(problem: &Problem, free: &[usize], x: &[f64]) -> f64 {
     free.iter().map(|&k| ((x[k] - problem.model.base[k]) / problem.model.numbers[k].trust).powi(2)).sum()
-}
-
-impl FitPoint {
-    /// The point `x`, whose prediction is `state`, with nothing linear about it.
-    fn new(problem: &Problem, whitener: &Whitener, x: Vec<f64>, state: Predictions) -> Self {
-        let residual = problem.residuals(&state);
-        let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
-        Self { x, state, free: Vec::new(), slopes: Arc::default(), white: Vec::new(), residual, cost }
-    }
-
-    /// The same with what is linear about the numbers `free`: their slopes, where those are known.
-    fn linear(
-        self,
-        problem: &Problem,
-        whitener: &Whitener,
-        free: &[usize],
-        known: Option<&Arc<Vec<ChannelValues>>>,
-    ) -> Self {
-        let slopes = known.cloned().unwrap_or_else(|| problem.slopes(&self.state, &self.x, free).into());
-        let white = slopes.par_iter().map(|slope| whitener.apply(slope, &problem.rows)).collect();
-        Self { free: free.to_vec(), slopes, white, ..self }
-    }
 }
 
 /// Fits the numbers `free`, starting from `x`.
