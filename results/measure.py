@@ -34,6 +34,8 @@ COMMANDS = {
                        "--csv results/against-seed18.csv"),
     "against-seed20": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 20 --jobs 2 "
                        "--csv results/against-seed20.csv"),
+    "against-seed21": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 21 --jobs 2 "
+                       "--csv results/against-seed21.csv"),
     "against-seed16": ([], "0.5 h", f"{BENCH} --against --n 40 --seconds 60 --seed 16 --jobs 2 "
                        "--csv results/against-seed16.csv"),
     "measured": (["logs"], "5 min", "python3 tests/python/measured_flights.py target/release/racer {logs} "
