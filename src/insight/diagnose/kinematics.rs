@@ -37,21 +37,10 @@ pub fn integrate(
     if record.windows.is_empty() {
         return out;
     }
-    let k = model.sensors(x).integrated();
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let tau = model.acting(x, Role::VelocityLag) * (1.0 - x[bends::VELOCITY]);
     let fine = &record.fine;
-    let mut corrected: Vec<[f64; 6]> = Vec::with_capacity(imu.gyro.len());
-    for i in 0..imu.gyro.len() {
-        let measured = [imu.gyro[i], imu.force[i]];
-        corrected.push(if k.any() {
-            let throttle = extended::throttle(command[i / fine.every][3]);
-            let throttle = if throttle.is_finite() { throttle } else { 0.0 };
-            truth(&k, measured, imu.slope[i], throttle)
-        } else {
-            joined(measured)
-        });
-    }
+    let corrected = corrected(&model.sensors(x).integrated(), record, command, imu);
     let lagged = if tau > 0.0 { Some(missing(record, &corrected, tau)) } else { None };
     let one = |&[from, to]: &[usize; 2]| -> [f64; 6] {
         let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
@@ -85,6 +74,23 @@ pub fn integrate(
     let each: Vec<[f64; 6]> = record.windows.par_iter().with_min_len(SIDE_BY_SIDE).map(fused_one).collect();
     let seen = if record.moves { 6 } else { 3 };
     (0..seen).for_each(|j| out[j] = each.iter().map(|window| window[j]).collect());
+    out
+}
+
+/// The IMU's samples without what the sensors `k` make of them: rates and specific force.
+#[inline(always)]
+fn corrected(k: &SensorErrors, record: &FlightRecord, command: &[[f64; 4]], imu: &ShiftedImu) -> Vec<[f64; 6]> {
+    let mut out = Vec::with_capacity(imu.gyro.len());
+    for i in 0..imu.gyro.len() {
+        let measured = [imu.gyro[i], imu.force[i]];
+        out.push(if k.any() {
+            let throttle = extended::throttle(command[i / record.fine.every][3]);
+            let throttle = if throttle.is_finite() { throttle } else { 0.0 };
+            truth(k, measured, imu.slope[i], throttle)
+        } else {
+            joined(measured)
+        });
+    }
     out
 }
 

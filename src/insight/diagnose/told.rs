@@ -9,8 +9,8 @@ use super::unseen::{self, parts, rise};
 use super::whiten::Whitener;
 use crate::insight::estimate::gram::Grams;
 
-/// The fit of the numbers `free`, without the thrust where flights at other throttles than the rest are better predicted
-/// by the curve that was given: a cubic that is fitted to slow flights says nothing of a fast one.
+/// The fit of the numbers `free`, without the thrust where flights at other throttles than the rest are better
+/// predicted by the curve that was given: a cubic that is fitted to slow flights says nothing of a fast one.
 pub fn told(problem: &Problem, whitener: &Whitener, free: &[usize]) -> FitPoint {
     let fit = |free: &[usize]| fit::fit(problem, whitener, &problem.model.base, free);
     let fitted = fit(free);
