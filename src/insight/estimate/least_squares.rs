@@ -29,17 +29,12 @@ pub enum Shorter<'a> {
     /// Levenberg and Marquardt: by more weight on the diagonal, remembered from one step to the next. It bends toward
     /// the steepest way down, which costs a new solution each time: for few numbers far from the minimum.
     Damped(&'a mut f64),
-    /// To where a parabola through what is known of the squares is lowest: for steps whose squares cost a prediction of
-    /// whole flights. No step at all where one is expected to lower them by less than so much.
-    Parabola(f64),
+    /// By half, so many times at most: for steps whose squares cost a prediction of whole flights.
+    Halved(i32),
 }
 
 /// Damping beyond which no step is left, and the least that is kept.
 const DAMPING: [f64; 2] = [1e-9, 100.0];
-
-/// The least share of a step, and the least and most of a share that the next is.
-const LEAST_SHARE: f64 = 1.0 / 16.0;
-const NEXT_SHARE: [f64; 2] = [0.1, 0.5];
 
 impl Normal<'_> {
     /// The step to the minimum, with `damping` times its own information on each number's diagonal. Numbers at a bound
@@ -105,30 +100,16 @@ impl Normal<'_> {
             let moved = |(n, by): (&Bounded, &f64)| (n.value + share * by).clamp(n.low, n.high);
             let values: Vec<f64> = at.iter().zip(step).map(moved).collect();
             let (now, rest) = squares(&values);
-            if now < before { Ok((values, now, rest)) } else { Err(now) }
+            (now < before).then_some((values, now, rest))
         };
         match shorter {
-            Shorter::Parabola(least) => {
+            Shorter::Halved(times) => {
                 let step = self.step(at, 0.0)?;
-                let expected: f64 = step.iter().zip(&self.downhill).map(|(step, down)| step * down).sum();
-                let mut share = 1.0;
-                while share >= LEAST_SHARE && expected >= least {
-                    match lower(&step, share) {
-                        Ok(found) => return Some(found),
-                        Err(now) => {
-                            // before - 2 expected share + bend share^2 goes through both.
-                            let bend = (now - before + 2.0 * expected * share) / (share * share);
-                            let next = expected / bend / share;
-                            // What is no number leads to the least.
-                            share *= if next > NEXT_SHARE[0] { next.min(NEXT_SHARE[1]) } else { NEXT_SHARE[0] };
-                        }
-                    }
-                }
-                None
+                (0..times).find_map(|halvings| lower(&step, 0.5f64.powi(halvings)))
             }
             Shorter::Damped(damping) => {
                 while *damping < DAMPING[1] {
-                    if let Some(found) = self.step(at, *damping).and_then(|step| lower(&step, 1.0).ok()) {
+                    if let Some(found) = self.step(at, *damping).and_then(|step| lower(&step, 1.0)) {
                         *damping = (*damping * 0.1).max(DAMPING[0]);
                         return Some(found);
                     }
@@ -154,25 +135,10 @@ mod tests {
             let normal = Normal { matrix: &matrix, downhill: vec![5.0 - y, 4.0 - y], ridge: vec![0.0; 2], within: &[] };
             let before = cost(&[0.0, y]).0;
             let mut damping = 1e-9;
-            for shorter in [Shorter::Parabola(0.0), Shorter::Damped(&mut damping)] {
+            for shorter in [Shorter::Halved(1), Shorter::Damped(&mut damping)] {
                 let (values, ..) = normal.descend(&at, shorter, before, cost).unwrap();
                 assert!((0..2).all(|k| (values[k] - wanted[k]).abs() < 1e-6), "{values:?}");
             }
-        }
-    }
-
-    #[test]
-    fn a_step_that_is_four_times_too_long_takes_two_looks() {
-        let matrix = DMatrix::from_element(1, 1, 25.0);
-        let normal = Normal { matrix: &matrix, downhill: vec![25.0], ridge: vec![0.0], within: &[] };
-        let at = [Bounded { value: 0.0, low: -9.0, high: 9.0 }];
-        for (least, looks) in [(0.0, 2), (30.0, 0)] {
-            let mut looked = 0;
-            let found = normal.descend(&at, Shorter::Parabola(least), 6.25, |v| {
-                looked += 1;
-                (100.0 * (v[0] - 0.25).powi(2), ())
-            });
-            assert_eq!((found.map(|(values, ..)| values), looked), ((looks > 0).then(|| vec![0.25]), looks));
         }
     }
 
@@ -181,6 +147,6 @@ mod tests {
         let matrix = DMatrix::from_element(1, 1, 1.0);
         let normal = Normal { matrix: &matrix, downhill: vec![1.0], ridge: vec![0.0], within: &[] };
         let at = [Bounded { value: 0.0, low: -1.0, high: 1.0 }];
-        assert!(normal.descend(&at, Shorter::Parabola(0.0), 1.0, |_| (2.0, ())).is_none());
+        assert!(normal.descend(&at, Shorter::Halved(5), 1.0, |_| (2.0, ())).is_none());
     }
 }
