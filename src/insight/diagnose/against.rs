@@ -90,7 +90,7 @@ fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch) -
     let place = |c: &Change| match c.status {
         Status::Suspected => 0.0,
         _ if constant(c) => 1e9,
-        Status::NamedSet | Status::Named => 2e9,
+        _ => 2e9,
     };
     let rank = |c: &Change| c.deviations + place(c);
     changes.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
