@@ -9,23 +9,24 @@ use crate::insight::estimate::jackknife::jackknife;
 use crate::insight::estimate::least_squares::{Bounded, Normal, Shorter};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Steps with the same derivatives, and how often these are renewed.
 const CHORDS: usize = 4;
 const RENEWALS: usize = 3;
-/// Times that a step is halved.
-const HALVINGS: i32 = 5;
-/// A step that lowers the whitened squares by less than this ends the fit.
+/// A step that lowers the whitened squares by less than this ends the fit, and that of one that is only tried.
 const ENOUGH: f64 = 0.05;
+const ENOUGH_TRIED: f64 = 1.0;
 
 /// Where a fit stands, with everything linear about it.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct FitPoint {
     pub x: Vec<f64>,
     pub state: Predictions,
     /// Numbers that are fitted.
     pub free: Vec<usize>,
-    /// Change of the prediction by each of them, whitened.
+    /// Change of the prediction by each of them, as it is and whitened.
+    pub slopes: Arc<Vec<ChannelValues>>,
     pub white: Vec<ChannelValues>,
     /// Measured less predicted.
     pub residual: ChannelValues,
@@ -34,6 +35,26 @@ pub struct FitPoint {
 }
 
 impl FitPoint {
+    /// The point `x`, whose prediction is `state`, with nothing linear about it.
+    fn new(problem: &Problem, whitener: &Whitener, x: Vec<f64>, state: Predictions) -> Self {
+        let residual = problem.residuals(&state);
+        let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
+        Self { x, state, free: Vec::new(), slopes: Arc::default(), white: Vec::new(), residual, cost }
+    }
+
+    /// The same with what is linear about the numbers `free`: their slopes, where those are known.
+    fn linear(
+        self,
+        problem: &Problem,
+        whitener: &Whitener,
+        free: &[usize],
+        known: Option<&Arc<Vec<ChannelValues>>>,
+    ) -> Self {
+        let slopes = known.cloned().unwrap_or_else(|| problem.slopes(&self.state, &self.x, free).into());
+        let white = slopes.par_iter().map(|slope| whitener.apply(slope, &problem.rows)).collect();
+        Self { free: free.to_vec(), slopes, white, ..self }
+    }
+
     pub fn total(&self) -> f64 {
         self.cost.iter().sum()
     }
@@ -68,43 +89,60 @@ fn penalty(problem: &Problem, free: &[usize], x: &[f64]) -> f64 {
 
 /// Fits the numbers `free`, starting from `x`.
 pub fn fit(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) -> FitPoint {
-    let mut x = x.to_vec();
-    let mut state = problem.predict(&x);
-    let mut residual = problem.residuals(&state);
-    let mut cost = costs(problem, &whitener.apply(&residual, &problem.rows));
-    for renewal in 0..=RENEWALS {
-        let white = whitened_slopes(problem, whitener, &state, &x, free);
-        let mut moved = false;
-        if renewal < RENEWALS {
-            let gram = Grams::new(&white.iter().collect::<Vec<_>>(), &problem.rows, 1.max(problem.blocks)).sum;
-            for _ in 0..CHORDS {
-                let whitened = whitener.apply(&residual, &problem.rows);
-                let normal = normal(problem, &gram, &white.iter().collect::<Vec<_>>(), &whitened, &x, free);
-                let Some(next) = descend(problem, whitener, (&state, &x), free, &normal, cost.iter().sum()) else {
-                    break;
-                };
-                let gained = cost.iter().sum::<f64>() - next.cost.iter().sum::<f64>();
-                (x, state, residual, cost) = (next.x, next.state, next.residual, next.cost);
-                moved |= gained > ENOUGH;
-                if gained < ENOUGH {
-                    break;
-                }
-            }
-        }
-        if !moved || renewal == RENEWALS {
-            return FitPoint { x, state, free: free.to_vec(), white, residual, cost };
-        }
-    }
-    unreachable!("the last renewal returns")
+    descended(problem, whitener, stay(problem, whitener, x, free))
+}
+
+/// Fits the numbers of `point` once more, by another whitener.
+pub fn again(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> FitPoint {
+    descended(problem, whitener, stay_again(problem, whitener, point))
 }
 
 /// The point `x` as it is, with what is linear about the numbers `free`.
 pub fn stay(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) -> FitPoint {
-    let state = problem.predict(x);
-    let residual = problem.residuals(&state);
-    let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
-    let white = whitened_slopes(problem, whitener, &state, x, free);
-    FitPoint { x: x.to_vec(), state, free: free.to_vec(), white, residual, cost }
+    FitPoint::new(problem, whitener, x.to_vec(), problem.predict(x)).linear(problem, whitener, free, None)
+}
+
+/// The point as it is, by another whitener.
+pub fn stay_again(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> FitPoint {
+    let same = FitPoint::new(problem, whitener, point.x.clone(), point.state.clone());
+    same.linear(problem, whitener, &point.free, Some(&point.slopes))
+}
+
+/// The fit of a point's numbers from where it stands.
+fn descended(problem: &Problem, whitener: &Whitener, mut at: FitPoint) -> FitPoint {
+    for _ in 0..RENEWALS {
+        let white: Vec<&ChannelValues> = at.white.iter().collect();
+        let gram = Grams::new(&white, &problem.rows, problem.blocks.max(1)).sum;
+        let mut next: Option<FitPoint> = None;
+        let mut moved = false;
+        for _ in 0..CHORDS {
+            let from = next.as_ref().unwrap_or(&at);
+            let whitened = whitener.apply(&from.residual, &problem.rows);
+            let normal = normal(problem, &gram, &white, &whitened, &from.x, &at.free);
+            let Some(lower) =
+                descend(problem, whitener, (&from.state, &from.x), &at.free, &normal, (from.total(), ENOUGH))
+            else {
+                break;
+            };
+            let gained = from.total() - lower.total();
+            next = Some(lower);
+            moved |= gained > ENOUGH;
+            if gained < ENOUGH {
+                break;
+            }
+        }
+        if let Some(next) = next {
+            at = if moved {
+                next.linear(problem, whitener, &at.free, None)
+            } else {
+                FitPoint { free: at.free, slopes: at.slopes, white: at.white, ..next }
+            };
+        }
+        if !moved {
+            break;
+        }
+    }
+    at
 }
 
 /// [`Problem::slopes`], whitened.
@@ -138,14 +176,15 @@ fn normal<'a>(
     Normal { matrix: gram, downhill, ridge, within: &[] }
 }
 
-/// The point a step away, halved until it is better; none where no part of the step is.
+/// The point a step away, or a part of it, that lowers the squares `before`; none where none does, or the step should
+/// by less than `least`.
 fn descend(
     problem: &Problem,
     whitener: &Whitener,
     from: (&Predictions, &[f64]),
     free: &[usize],
     normal: &Normal,
-    before: f64,
+    (before, least): (f64, f64),
 ) -> Option<FitPoint> {
     let (old, x) = from;
     let numbers = &problem.model.numbers;
@@ -156,13 +195,11 @@ fn descend(
         free.iter().zip(values).for_each(|(&k, value)| next[k] = *value);
         let moved: Vec<usize> = free.iter().copied().filter(|&k| next[k] != x[k]).collect();
         let state = problem.change(old, &moved, &next);
-        let residual = problem.residuals(&state);
-        let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
-        let total = cost.iter().sum::<f64>() + penalty(problem, free, &next);
-        (total, FitPoint { x: next, state, free: Vec::new(), white: Vec::new(), residual, cost })
+        let point = FitPoint::new(problem, whitener, next, state);
+        (point.total() + penalty(problem, free, &point.x), point)
     };
     let before = before + penalty(problem, free, x);
-    normal.descend(&at, Shorter::Halved(HALVINGS), before, squares).map(|(_, _, point)| point)
+    normal.descend(&at, Shorter::Halved(least), before, squares).map(|(_, _, point)| point)
 }
 
 /// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken
@@ -190,20 +227,20 @@ pub fn refit_in(
     let kept: Vec<usize> = (0..point.free.len()).filter(|&j| touched(&point.free[j])).collect();
     let free: Vec<usize> = kept.iter().map(|&j| point.free[j]).chain(own.iter().copied()).collect();
     let moved: Vec<usize> = (0..x.len()).filter(|&k| x[k] != point.x[k]).collect();
-    let state = problem.change(&point.state, &moved, x);
-    let residual = problem.residuals(&state);
-    let cost = costs(problem, &whitener.apply(&residual, &problem.rows));
-    let mut at = FitPoint { x: x.to_vec(), state, free: Vec::new(), white: Vec::new(), residual, cost };
+    let mut at = FitPoint::new(problem, whitener, x.to_vec(), problem.change(&point.state, &moved, x));
     for _ in 0..steps {
         let mine = whitened_slopes(problem, whitener, &at.state, &at.x, own);
         let white: Vec<&ChannelValues> = kept.iter().map(|&j| &point.white[j]).chain(&mine).collect();
         let gram = Grams::new(&white, &problem.rows, problem.blocks).sum;
         let whitened = whitener.apply(&at.residual, &problem.rows);
         let normal = normal(problem, &gram, &white, &whitened, &at.x, &free);
-        let Some(next) = descend(problem, whitener, (&at.state, &at.x), &free, &normal, at.total()) else { break };
+        let Some(next) = descend(problem, whitener, (&at.state, &at.x), &free, &normal, (at.total(), ENOUGH_TRIED))
+        else {
+            break;
+        };
         let gained = at.total() - next.total();
         at = next;
-        if gained < 1.0 {
+        if gained < ENOUGH_TRIED {
             break;
         }
     }

@@ -34,7 +34,7 @@ impl HeldOut {
         let x: Vec<f64> = self.extended.x.iter().zip(change).zip(&problem.model.numbers).map(moved).collect();
         let state = problem.predict(&x);
         let residual = problem.residuals(&state);
-        let other = FitPoint { x, state, free: Vec::new(), white: Vec::new(), residual, cost: Vec::new() };
+        let other = FitPoint { x, state, residual, ..FitPoint::default() };
         let [without, with] = if held { [&other, &self.extended] } else { [&self.extended, &other] };
         let mut all = channels(problem, without, with, &self.out);
         all.retain(|_, gain| gain.before.is_finite() && gain.after.is_finite());

@@ -4,10 +4,14 @@ use super::bends;
 use super::imu_seen::{ShiftedImu, fine_axes, lagged};
 use super::model::Model;
 use super::record::FlightRecord;
-use crate::base::lane::build;
+use crate::base::lane::{build, fused};
 use crate::model::attitude::{Quaternion, body_axes, compose, in_world, normalized, rotation_vector, small_rotation};
 use crate::model::dynamics::extended;
 use crate::model::effects::{Role, Sensed, SensorErrors};
+use rayon::prelude::*;
+
+/// Windows that one thread integrates while others integrate others.
+const SIDE_BY_SIDE: usize = 64;
 
 /// By how much the gyro's and the accelerometer's samples are late to the attitude's and the velocity's, s.
 pub fn offsets(model: &Model, record: &FlightRecord, x: &[f64]) -> [f64; 2] {
@@ -33,23 +37,12 @@ pub fn integrate(
     if record.windows.is_empty() {
         return out;
     }
-    let k = model.sensors(x).integrated();
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let tau = model.acting(x, Role::VelocityLag) * (1.0 - x[bends::VELOCITY]);
     let fine = &record.fine;
-    let mut corrected: Vec<[f64; 6]> = Vec::with_capacity(imu.gyro.len());
-    for i in 0..imu.gyro.len() {
-        let measured = [imu.gyro[i], imu.force[i]];
-        corrected.push(if k.any() {
-            let throttle = extended::throttle(command[i / fine.every][3]);
-            let throttle = if throttle.is_finite() { throttle } else { 0.0 };
-            truth(&k, measured, imu.slope[i], throttle)
-        } else {
-            joined(measured)
-        });
-    }
+    let corrected = corrected(&model.sensors(x).integrated(), record, command, imu);
     let lagged = if tau > 0.0 { Some(missing(record, &corrected, tau)) } else { None };
-    for &[from, to] in &record.windows {
+    let one = |&[from, to]: &[usize; 2]| -> [f64; 6] {
         let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
         let axes = record.axes[from];
         // Gravity was taken off the measured change for as long as the recorder's clock said, not for as long as it
@@ -70,13 +63,33 @@ pub fn integrate(
             }
             (0..3).for_each(|j| pushed[j] += h * push[j]);
         }
-        let rotated = rotation_vector(turn);
-        for j in 0..3 {
-            out[j].push(rotated[j]);
-            if record.moves {
-                out[3 + j].push(pushed[j]);
-            }
-        }
+        joined([rotation_vector(turn), pushed])
+    };
+    let fused_one = |window: &[usize; 2]| {
+        fused(
+            #[inline(always)]
+            || one(window),
+        )
+    };
+    let each: Vec<[f64; 6]> = record.windows.par_iter().with_min_len(SIDE_BY_SIDE).map(fused_one).collect();
+    let seen = if record.moves { 6 } else { 3 };
+    (0..seen).for_each(|j| out[j] = each.iter().map(|window| window[j]).collect());
+    out
+}
+
+/// The IMU's samples without what the sensors `k` make of them: rates and specific force.
+#[inline(always)]
+fn corrected(k: &SensorErrors, record: &FlightRecord, command: &[[f64; 4]], imu: &ShiftedImu) -> Vec<[f64; 6]> {
+    let mut out = Vec::with_capacity(imu.gyro.len());
+    for i in 0..imu.gyro.len() {
+        let measured = [imu.gyro[i], imu.force[i]];
+        out.push(if k.any() {
+            let throttle = extended::throttle(command[i / record.fine.every][3]);
+            let throttle = if throttle.is_finite() { throttle } else { 0.0 };
+            truth(k, measured, imu.slope[i], throttle)
+        } else {
+            joined(measured)
+        });
     }
     out
 }

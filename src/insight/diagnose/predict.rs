@@ -15,10 +15,14 @@ use crate::model::attitude::dot;
 use crate::model::dynamics::battery::discharged;
 use crate::model::dynamics::extended::{self, Extended, ForceInputs, TurnError};
 use crate::model::effects::{Card, Quantities, Quantity, Role, Sensed};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Cut-off below which the measured voltage is believed rather than the modelled one, Hz.
 const VOLTAGE_HZ: f64 = 0.5;
+
+/// Samples that one thread predicts while others predict others.
+const SIDE_BY_SIDE: usize = 4096;
 
 /// One flight, predicted; every stage is kept and shared, so that a number late in the chain is cheap to change.
 #[derive(Clone, Debug, Default)]
@@ -175,11 +179,10 @@ impl Predicted {
     #[inline(always)]
     fn push(&mut self, p: &Extended<f64>, record: &FlightRecord, [tau, gravity]: [f64; 2]) {
         let since = record.since();
-        let mut out = Vec::with_capacity(record.time.len());
         if tau > 0.0 {
             self.lagged = LaggedForce::renewed(std::mem::take(&mut self.lagged), record, tau);
         }
-        for i in 0..record.time.len() {
+        let inputs = |i: usize| {
             let mut velocity: [f64; 3] = build!(|k| record.velocity[k][i]);
             if tau > 0.0 {
                 let mut gains = self.lagged.world[i * record.fine.every];
@@ -188,7 +191,7 @@ impl Predicted {
                     velocity[k] += tau * dot(record.axes[i][k], gains);
                 }
             }
-            let inputs = ForceInputs {
+            ForceInputs {
                 command: self.command[i][3],
                 voltage: self.voltage[i],
                 axes: record.axes[i],
@@ -197,9 +200,19 @@ impl Predicted {
                 height: record.height[i],
                 turn_error: self.lag[i],
                 elapsed: record.time[i] - since,
-            };
-            out.push(extended::force(p, &inputs));
-        }
+            }
+        };
+        let mut out = vec![[0.0; 3]; record.time.len()];
+        out.par_chunks_mut(SIDE_BY_SIDE).enumerate().for_each(|(chunk, out)| {
+            fused(
+                #[inline(always)]
+                || {
+                    for (j, out) in out.iter_mut().enumerate() {
+                        *out = extended::force(p, &inputs(chunk * SIDE_BY_SIDE + j));
+                    }
+                },
+            );
+        });
         self.force = out.into();
     }
 

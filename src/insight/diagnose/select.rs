@@ -99,8 +99,7 @@ pub struct Added {
 /// Adds effects until none is worth it.
 pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection {
     watch("fitting the base", 0.1);
-    let free = base_numbers(problem);
-    let mut search = Search::new(problem, free);
+    let mut search = Search::new(problem, &base_numbers(problem));
     let free = search.point.free.clone();
     let mut reach = Vec::new();
     let most = MOST_EFFECTS.count();
@@ -137,18 +136,14 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// The base alone, with those of the numbers `free` that the flights tell.
-    fn new(problem: &'a Problem, free: Vec<usize>) -> Self {
+    fn new(problem: &'a Problem, free: &[usize]) -> Self {
         let base = &problem.model.base;
         let state = problem.predict(base);
         let plain = problem.residuals(&state);
         let whitener = Whitener::plain(&plain, &problem.rows);
         let skewed =
             super::skew::estimate(problem, &state, &plain).is_some_and(|skew| skew.abs() > CLOCK_SKEW_SEEN.get());
-        let point = if skewed {
-            fit::stay(problem, &whitener, base, &free)
-        } else {
-            fit::fit(problem, &whitener, base, &told(problem, &whitener, free))
-        };
+        let point = if skewed { fit::stay(problem, &whitener, base, free) } else { told(problem, &whitener, free) };
         Search { problem, skewed, whitener, point, added: Vec::new(), pending: Vec::new(), found: Vec::new() }
     }
 
@@ -168,8 +163,8 @@ impl<'a> Search<'a> {
         // Noise is what is left when everything is taken off that any cause could explain.
         for _ in 0..if first { 2 } else { 1 } {
             self.whitener = saturated(problem, &self.whitener, &self.point, &self.found);
-            let fit = if self.skewed && first { fit::stay } else { fit::fit };
-            self.point = fit(problem, &self.whitener, &self.point.x, &self.point.free);
+            let fit = if self.skewed && first { fit::stay_again } else { fit::again };
+            self.point = fit(problem, &self.whitener, &self.point);
             let whitener = &self.whitener;
             self.found.par_iter_mut().for_each(|c| c.white = whitener.apply(&c.change, &problem.rows));
         }
@@ -267,8 +262,7 @@ pub fn left_over(
     let sets = problem.sets();
     let each: Vec<DMatrix<f64>> = sets.iter().map(|out| together(&seen(&grams, out))).collect::<Option<_>>()?;
     let mut left = point.residual.clone();
-    let raw: Vec<ChannelValues> = point.free.par_iter().map(|&k| problem.slope(&point.state, &point.x, k)).collect();
-    for (j, column) in raw.iter().chain(found.iter().map(|c| &c.change)).enumerate() {
+    for (j, column) in point.slopes.iter().chain(found.iter().map(|c| &c.change)).enumerate() {
         for (c, column) in column.iter().enumerate() {
             for ((left, x), row) in left[c].iter_mut().zip(column).zip(&problem.rows[c]) {
                 let set = sets.iter().position(|out| !out[row.block as usize]).unwrap_or(0);

@@ -9,18 +9,18 @@ use super::unseen::{self, parts, rise};
 use super::whiten::Whitener;
 use crate::insight::estimate::gram::Grams;
 
-/// The numbers `free`, without the thrust where flights at other throttles than the rest are better predicted by the
-/// curve that was given: a cubic that is fitted to slow flights says nothing of a fast one.
-pub fn told(problem: &Problem, whitener: &Whitener, free: Vec<usize>) -> Vec<usize> {
+/// The fit of the numbers `free`, without the thrust where flights at other throttles than the rest are better
+/// predicted by the curve that was given: a cubic that is fitted to slow flights says nothing of a fast one.
+pub fn told(problem: &Problem, whitener: &Whitener, free: &[usize]) -> FitPoint {
+    let fit = |free: &[usize]| fit::fit(problem, whitener, &problem.model.base, free);
+    let fitted = fit(free);
     let given: Vec<usize> = free.iter().copied().filter(|k| !THRUST.contains(k)).collect();
     if given.len() == free.len() || problem.rows[LIFT].is_empty() {
-        return free;
+        return fitted;
     }
-    let [fitted, held] = [&free, &given].map(|free| {
-        let point = fit::fit(problem, whitener, &problem.model.base, free);
-        lift_unseen(problem, whitener, &point)
-    });
-    if rise(&held, &fitted).is_some() { given } else { free }
+    let held = fit(&given);
+    let [before, after] = [&held, &fitted].map(|point| lift_unseen(problem, whitener, point));
+    if rise(&before, &after).is_some() { held } else { fitted }
 }
 
 /// Squares of the residuals of the specific force along the rotors' axis by stretch of time, each predicted by numbers

@@ -150,7 +150,7 @@ impl Trials<'_> {
         let first = match starts {
             [only] => only.clone(),
             _ => {
-                let all = starts.iter().map(glance);
+                let all = starts.par_iter().map(glance);
                 all.min_by(|a, b| a.total().total_cmp(&b.total())).map_or(self.point.x.clone(), |at| at.x)
             }
         };
@@ -161,7 +161,7 @@ impl Trials<'_> {
                 let all = [&own[..], &[k]].concat();
                 (k, fit::refit(self.problem, self.whitener, self.point, &all, &best.x))
             };
-            let tried = forms.iter().map(with).min_by(|a, b| a.1.total().total_cmp(&b.1.total()));
+            let tried = forms.par_iter().map(with).min_by(|a, b| a.1.total().total_cmp(&b.1.total()));
             match tried {
                 Some((form, point)) if best.total() - point.total() > least => {
                     forms.retain(|k| *k != form);

@@ -29,12 +29,16 @@ pub enum Shorter<'a> {
     /// Levenberg and Marquardt: by more weight on the diagonal, remembered from one step to the next. It bends toward
     /// the steepest way down, which costs a new solution each time: for few numbers far from the minimum.
     Damped(&'a mut f64),
-    /// By half, so many times at most: for steps whose squares cost a prediction of whole flights.
-    Halved(i32),
+    /// By half, down to a sixteenth: for steps whose squares cost a prediction of whole flights. No step at all where
+    /// one is expected to lower them by less than so much.
+    Halved(f64),
 }
 
 /// Damping beyond which no step is left, and the least that is kept.
 const DAMPING: [f64; 2] = [1e-9, 100.0];
+
+/// Times that a step is halved and tried.
+const HALVINGS: i32 = 5;
 
 impl Normal<'_> {
     /// The step to the minimum, with `damping` times its own information on each number's diagonal. Numbers at a bound
@@ -103,8 +107,10 @@ impl Normal<'_> {
             (now < before).then_some((values, now, rest))
         };
         match shorter {
-            Shorter::Halved(times) => {
+            Shorter::Halved(least) => {
                 let step = self.step(at, 0.0)?;
+                let expected: f64 = step.iter().zip(&self.downhill).map(|(by, down)| by * down).sum();
+                let times = if expected < least { 0 } else { HALVINGS };
                 (0..times).find_map(|halvings| lower(&step, 0.5f64.powi(halvings)))
             }
             Shorter::Damped(damping) => {
@@ -135,7 +141,7 @@ mod tests {
             let normal = Normal { matrix: &matrix, downhill: vec![5.0 - y, 4.0 - y], ridge: vec![0.0; 2], within: &[] };
             let before = cost(&[0.0, y]).0;
             let mut damping = 1e-9;
-            for shorter in [Shorter::Halved(1), Shorter::Damped(&mut damping)] {
+            for shorter in [Shorter::Halved(0.0), Shorter::Damped(&mut damping)] {
                 let (values, ..) = normal.descend(&at, shorter, before, cost).unwrap();
                 assert!((0..2).all(|k| (values[k] - wanted[k]).abs() < 1e-6), "{values:?}");
             }
@@ -143,10 +149,17 @@ mod tests {
     }
 
     #[test]
-    fn a_step_that_never_pays_is_none() {
+    fn a_step_that_never_pays_is_none_and_one_that_cannot_is_not_tried() {
         let matrix = DMatrix::from_element(1, 1, 1.0);
         let normal = Normal { matrix: &matrix, downhill: vec![1.0], ridge: vec![0.0], within: &[] };
         let at = [Bounded { value: 0.0, low: -1.0, high: 1.0 }];
-        assert!(normal.descend(&at, Shorter::Halved(5), 1.0, |_| (2.0, ())).is_none());
+        for (least, looks) in [(0.9, HALVINGS), (1.1, 0)] {
+            let mut looked = 0;
+            let found = normal.descend(&at, Shorter::Halved(least), 1.0, |_| {
+                looked += 1;
+                (2.0, ())
+            });
+            assert_eq!((found, looked), (None, looks));
+        }
     }
 }

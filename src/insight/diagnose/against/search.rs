@@ -48,7 +48,7 @@ impl<'a> DifferenceSearch<'a> {
     /// From `selection`, which both sets have in common.
     pub fn new(problem: &'a Problem, suspects: &'a [Suspect], mut selection: Selection) -> Self {
         let Selection { point, whitener, .. } = &mut selection;
-        *point = fit::fit(problem, whitener, &point.x, &point.free);
+        *point = fit::again(problem, whitener, point);
         let cards: Vec<&'static Card> = suspects.iter().filter_map(|s| s.card).collect();
         let held = |card: &Card| span(card).any(|k| point.free.contains(&k));
         let cards: Vec<_> = cards.into_iter().filter(|card| !held(card)).collect();

@@ -2,7 +2,7 @@
 //! compose the same stages; only where the inputs come from differs.
 
 use super::{EffectMemory, Extended};
-use crate::base::lane::{Real, build, each};
+use crate::base::lane::{Mask, Real, build, each};
 use crate::model::attitude::{body_axes, dot};
 use crate::model::dynamics::{State, drag, response};
 use crate::model::effects::{
@@ -61,22 +61,23 @@ pub fn actuator_response<R: Real>(
     let tau =
         [actuator.tau[0], actuator.tau[1], actuator.tau[2], R::select(falling, actuator.tau_down, actuator.tau[3])];
     let (oscillates, limited) = values.shapes();
-    let mut next: [R; 4] = build!(|i| {
-        if i < 3 && limited {
-            response::limited(command[i], setpoint.command[i], tau[i], actuator.slew[i] * p.compact.max_rate[i], h)
-        } else {
-            response::toward(command[i], setpoint.command[i], R::one() - (-(h / tau[i])).exp())
-        }
-    });
     let mut next_slope = slope;
-    if oscillates {
-        for i in 0..3 {
-            // An axis, or a lane, without inertia keeps what the others override.
+    let mut next: [R; 4] = [zero; 4];
+    for i in 0..4 {
+        // An axis, or a lane, without inertia keeps what the others override.
+        let second_order = zero.lt(if i < 3 { actuator.inertia[i] } else { zero });
+        if !oscillates || (!second_order).any() {
+            next[i] = if i < 3 && limited {
+                response::limited(command[i], setpoint.command[i], tau[i], actuator.slew[i] * p.compact.max_rate[i], h)
+            } else {
+                response::toward(command[i], setpoint.command[i], R::one() - (-(h / tau[i])).exp())
+            };
+        }
+        if i < 3 && oscillates {
             let inertia = actuator.inertia[i];
-            let oscillates_here = zero.lt(inertia);
             let (value, change) = response::second_order(command[i], slope[i], setpoint.command[i], tau[i], inertia, h);
-            next[i] = R::select(oscillates_here, value, next[i]);
-            next_slope[i] = R::select(oscillates_here, change, next_slope[i]);
+            next[i] = R::select(second_order, value, next[i]);
+            next_slope[i] = R::select(second_order, change, next_slope[i]);
         }
     }
     (next, next_slope)
