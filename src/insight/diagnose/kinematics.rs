@@ -39,42 +39,52 @@ pub fn integrate(
     }
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let tau = model.acting(x, Role::VelocityLag) * (1.0 - x[bends::VELOCITY]);
-    let fine = &record.fine;
     let corrected = corrected(&model.sensors(x).integrated(), record, command, imu);
     let lagged = if tau > 0.0 { Some(missing(record, &corrected, tau)) } else { None };
-    let one = |&[from, to]: &[usize; 2]| -> [f64; 6] {
-        let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
-        let axes = record.axes[from];
-        // Gravity was taken off the measured change for as long as the recorder's clock said, not for as long as it
-        // was.
-        let fast = (1.0 - stretch) * (record.time[to] - record.time[from]) * model.vehicle().gravity_m_s2;
-        let mut pushed: [f64; 3] = build!(|j| fast * axes[j][2]);
-        for i in from * fine.every..to * fine.every {
-            let h = (fine.time[i + 1] - fine.time[i]) * stretch;
-            let mean: [f64; 6] = build!(|j| 0.5 * (corrected[i][j] + corrected[i + 1][j]));
-            let half = small_rotation([mean[0], mean[1], mean[2]], 0.5 * h);
-            let middle = compose(turn, half);
-            turn = normalized(compose(middle, half));
-            let mut push = in_world(&body_axes(middle), [mean[3], mean[4], mean[5]]);
-            if let Some(world) = &lagged {
-                for j in 0..3 {
-                    push[j] += (0..3).map(|c| axes[j][c] * 0.5 * (world[i][c] + world[i + 1][c])).sum::<f64>();
-                }
-            }
-            (0..3).for_each(|j| pushed[j] += h * push[j]);
-        }
-        joined([rotation_vector(turn), pushed])
-    };
+    let gravity = model.vehicle().gravity_m_s2;
     let fused_one = |window: &[usize; 2]| {
         fused(
             #[inline(always)]
-            || one(window),
+            || over(window, record, [stretch, gravity], &corrected, lagged.as_deref()),
         )
     };
     let each: Vec<[f64; 6]> = record.windows.par_iter().with_min_len(SIDE_BY_SIDE).map(fused_one).collect();
     let seen = if record.moves { 6 } else { 3 };
     (0..seen).for_each(|j| out[j] = each.iter().map(|window| window[j]).collect());
     out
+}
+
+/// The same over one window, whose seconds are in truth `stretch` long. Inline, so that all of it is compiled for a
+/// processor with a fused multiply-add.
+#[inline(always)]
+fn over(
+    &[from, to]: &[usize; 2],
+    record: &FlightRecord,
+    [stretch, gravity]: [f64; 2],
+    corrected: &[[f64; 6]],
+    lagged: Option<&[[f64; 3]]>,
+) -> [f64; 6] {
+    let fine = &record.fine;
+    let mut turn: Quaternion<f64> = [1.0, 0.0, 0.0, 0.0];
+    let axes = record.axes[from];
+    // Gravity was taken off the measured change for as long as the recorder's clock said, not for as long as it was.
+    let fast = (1.0 - stretch) * (record.time[to] - record.time[from]) * gravity;
+    let mut pushed: [f64; 3] = build!(|j| fast * axes[j][2]);
+    for i in from * fine.every..to * fine.every {
+        let h = (fine.time[i + 1] - fine.time[i]) * stretch;
+        let mean: [f64; 6] = build!(|j| 0.5 * (corrected[i][j] + corrected[i + 1][j]));
+        let half = small_rotation([mean[0], mean[1], mean[2]], 0.5 * h);
+        let middle = compose(turn, half);
+        turn = normalized(compose(middle, half));
+        let mut push = in_world(&body_axes(middle), [mean[3], mean[4], mean[5]]);
+        if let Some(world) = lagged {
+            for j in 0..3 {
+                push[j] += (0..3).map(|c| axes[j][c] * 0.5 * (world[i][c] + world[i + 1][c])).sum::<f64>();
+            }
+        }
+        (0..3).for_each(|j| pushed[j] += h * push[j]);
+    }
+    joined([rotation_vector(turn), pushed])
 }
 
 /// The IMU's samples without what the sensors `k` make of them: rates and specific force.

@@ -178,42 +178,48 @@ impl Predicted {
     /// Specific force. A velocity that lags by `tau` is taken as what it will be.
     #[inline(always)]
     fn push(&mut self, p: &Extended<f64>, record: &FlightRecord, [tau, gravity]: [f64; 2]) {
-        let since = record.since();
         if tau > 0.0 {
             self.lagged = LaggedForce::renewed(std::mem::take(&mut self.lagged), record, tau);
         }
-        let inputs = |i: usize| {
-            let mut velocity: [f64; 3] = build!(|k| record.velocity[k][i]);
-            if tau > 0.0 {
-                let mut gains = self.lagged.world[i * record.fine.every];
-                gains[2] -= gravity;
-                for k in 0..3 {
-                    velocity[k] += tau * dot(record.axes[i][k], gains);
-                }
-            }
-            ForceInputs {
-                command: self.command[i][3],
-                voltage: self.voltage[i],
-                axes: record.axes[i],
-                velocity,
-                rates: self.rates[i],
-                height: record.height[i],
-                turn_error: self.lag[i],
-                elapsed: record.time[i] - since,
-            }
-        };
+        let (since, this) = (record.since(), &*self);
         let mut out = vec![[0.0; 3]; record.time.len()];
         out.par_chunks_mut(SIDE_BY_SIDE).enumerate().for_each(|(chunk, out)| {
             fused(
                 #[inline(always)]
                 || {
                     for (j, out) in out.iter_mut().enumerate() {
-                        *out = extended::force(p, &inputs(chunk * SIDE_BY_SIDE + j));
+                        *out = extended::force(
+                            p,
+                            &this.force_inputs(record, [tau, gravity, since], chunk * SIDE_BY_SIDE + j),
+                        );
                     }
                 },
             );
         });
         self.force = out.into();
+    }
+
+    /// What acts on a sample. Inline, so that all of it is compiled for a processor with a fused multiply-add.
+    #[inline(always)]
+    fn force_inputs(&self, record: &FlightRecord, [tau, gravity, since]: [f64; 3], i: usize) -> ForceInputs<f64> {
+        let mut velocity: [f64; 3] = build!(|k| record.velocity[k][i]);
+        if tau > 0.0 {
+            let mut gains = self.lagged.world[i * record.fine.every];
+            gains[2] -= gravity;
+            for k in 0..3 {
+                velocity[k] += tau * dot(record.axes[i][k], gains);
+            }
+        }
+        ForceInputs {
+            command: self.command[i][3],
+            voltage: self.voltage[i],
+            axes: record.axes[i],
+            velocity,
+            rates: self.rates[i],
+            height: record.height[i],
+            turn_error: self.lag[i],
+            elapsed: record.time[i] - since,
+        }
     }
 
     /// What the thrust has beside its curve.
