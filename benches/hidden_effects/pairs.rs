@@ -29,7 +29,7 @@ const WORK: [(&str, &[&str], [f64; 2]); 6] = [
         &["thrust_response", "thrust_delay", "rate_response", "rate_delay", "rate_second_order"],
         [0.3, 0.8],
     ),
-    ("gains", &["rate_response", "yaw_response", "rate_delay", "rate_second_order"], [0.25, 0.5]),
+    ("gains", &["rate_gains", "rate_response", "yaw_response", "rate_delay", "rate_second_order"], [0.25, 0.5]),
     ("rate_profile", &["full_stick_rates"], [0.1, 0.3]),
     ("old_pack", &["discharge"], [0.3, 0.8]),
 ];

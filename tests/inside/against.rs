@@ -95,3 +95,25 @@ fn what_the_model_gets_wrong_of_both_flights_does_not_hide_a_change() {
     let same = compare(vec![flown(&airframe, 1)], vec![flown(&airframe, 2)], &vehicle, &mut |_, _| ());
     assert!(!same.changed, "{:?}", named(&same));
 }
+
+/// Slow motors turn a vehicle as they can, whatever the gains are: its rates hardly tell, what its motors are sent does.
+#[test]
+fn gains_of_the_rate_loop_are_named_by_the_motors() {
+    let airframe = Airframe::draw(SEED);
+    let mut softer = airframe.clone();
+    softer.bandwidth = softer.bandwidth.map(|bandwidth| 0.6 * bandwidth);
+    let flown = |airframe: &Airframe, seed: u64| {
+        let setting = Setting { seed, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
+        check(&other::fly(airframe, &[], &setting))
+    };
+    let vehicle = airframe.nominal().in_racer();
+    let changes = compare(vec![flown(&airframe, 1)], vec![flown(&softer, 2)], &vehicle, &mut |_, _| ());
+    assert_eq!(named(&changes), ["rate_gains"]);
+    let change = &changes.changes[0];
+    for axis in ["gain.roll", "gain.pitch"] {
+        let share = change.after[axis].value / change.before[axis].value;
+        assert!((share - 0.6).abs() < 0.15, "{axis}: {share}");
+        let [low, high] = [change.difference[axis].low, change.difference[axis].high];
+        assert!((low..high).contains(&(-0.4 * change.before[axis].value)), "{axis}: {low} to {high}");
+    }
+}

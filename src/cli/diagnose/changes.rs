@@ -102,12 +102,12 @@ fn paragraph(c: &Change) -> String {
         Some(format!("\n   {name} was {was}, is {is} {}; difference {difference}", d.unit))
     });
     format!(
-        "{} ({}){status}\n   {}{}\n   {:.0} standard deviations; {:.2} m/s after a second",
+        "{} ({}){status}\n   {}{}\n   {:.0} standard deviations{}",
         c.name,
         c.cause,
         c.sentence,
         rows.collect::<String>(),
         c.deviations,
-        c.impact
+        c.impact.map_or(String::new(), |impact| format!("; {impact:.2} m/s after a second"))
     )
 }

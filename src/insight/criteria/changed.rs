@@ -31,6 +31,24 @@ CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were th
     CHANGED_IMPACT = 0.02, Assumed("of eight pairs, changes that were found did 0.8 and more, a false one 0.017");
     /// Change of a sensor's constant error that matters, in small typical sizes.
     CHANGED_BIAS = 4.0, Assumed("it is another after every switching on");
+    /// Change of a rate loop's gain, by motor outputs, that matters.
+    CHANGED_GAIN = 0.3, Assumed("other causes moved what is read of it by up to a quarter, in 100 pairs");
+    /// Error of such a gain beside its spread over the time, as a share.
+    GAIN_ERROR = 0.055, Assumed("where no gain changed, 276 axes then differ by one standard deviation");
+    /// Standard deviations that it changes by about each axis, at least.
+    GAIN_DEVIATIONS = 2.0, Assumed("of each axis, and both have to say so");
+    /// And about both together.
+    GAINS_DEVIATIONS = 6.0, Assumed("of 97 unchanged pairs none had two, the same way, beyond 2 and together 4.8");
+    /// Share of the turns that motor outputs have to explain.
+    GAIN_TURNED = 0.9, Assumed("0.97 of most flights, less where a gap or a hit is among them");
+    /// Share of those outputs that errors and turns have to explain.
+    GAIN_ANSWERED = 0.94, Assumed("0.98 of most flights");
+    /// What the outputs turn has to be the same for a gain to be compared, as a share.
+    SAME_AUTHORITY = 0.15, Assumed("within 10 % where it was");
+    /// The lag of the motors.
+    SAME_LAG = 0.2, Assumed("within a step of 14 % where it was");
+    /// The delay of the commands, s.
+    SAME_DELAY_S = 0.005, Assumed("a filter of 4 ms on the sticks reads as gains of 60 %");
     /// Share of the best gain from which the plainest of those that are tied is preferred.
     PLAIN_SHARE = 0.9, Assumed("slower gains did 0.95 of what a response that slows with the voltage did");
     /// Squared standard deviations over stretches of time from which a difference is worth a fit.

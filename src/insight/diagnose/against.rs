@@ -9,6 +9,7 @@ mod alike;
 mod change;
 mod columns;
 mod flown;
+mod gains;
 mod judge;
 mod motor;
 mod search;
@@ -20,6 +21,7 @@ use super::contrast::Contrast;
 use super::finding::{Diagnosis, Status};
 use super::fitted::FittedSelection;
 use super::problem::Problem;
+use super::rate_gains::rate_gains;
 use super::select::Selection;
 use super::shown;
 use super::size::is_material;
@@ -30,13 +32,17 @@ use crate::model::effects::{self, Role};
 use crate::model::vehicle::Vehicle;
 pub use change::{Both, Change, Changes, WouldShow};
 use columns::Tested;
+use gains::FlightGains;
+use rayon::prelude::*;
 use search::DifferenceSearch;
 use suspect::{FoundDifference, Suspect};
 
 /// What changed from the flights `before` to the flights `after`, of a vehicle that is thought to be `vehicle`.
 pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Changes {
     let later: Vec<bool> = before.iter().map(|_| false).chain(after.iter().map(|_| true)).collect();
-    let all = before.into_iter().chain(after).collect();
+    let all: Vec<Quality> = before.into_iter().chain(after).collect();
+    let gains = all.par_iter().map(|q| rate_gains(&q.log, &q.usable)).collect::<Vec<_>>();
+    let gains: Vec<FlightGains> = later.iter().copied().zip(gains).collect();
     let contrasted = |logs| {
         let mut problem = super::problem(logs, vehicle);
         problem.contrast = Some(Contrast::new(&mut problem.model, later.clone()));
@@ -52,7 +58,7 @@ pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, wat
     let selection = Selection { whitener: alike::deaf(&problem, &selection), ..selection };
     let search = DifferenceSearch::new(&problem, &suspects, selection).run();
     let would_show = would_show(&problem, &search.tested, &suspects);
-    Changes { would_show, left_out, ..changes(&problem, &suspects, &search) }
+    Changes { would_show, left_out, ..changes(&problem, &suspects, &search, &gains) }
 }
 
 impl Changes {
@@ -72,7 +78,7 @@ fn allowed(search: &DifferenceSearch, suspects: &[Suspect]) -> Vec<FoundDifferen
 }
 
 /// The answer.
-fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch) -> Changes {
+fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch, gains: &[FlightGains]) -> Changes {
     let fitted = &FittedSelection::new(problem, &search.selection);
     let mut changes = judge::all(fitted, suspects, &search.found);
     changes.extend(search.rejected.iter().cloned());
@@ -83,6 +89,7 @@ fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch) -
         changes.retain(|c| c.cause != motor.cause);
         changes.push(motor);
     }
+    gains::lead(gains, &mut changes);
     // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first, the
     // surest of it before all, told from all others or not.
     let own = [Role::ConstantError, Role::ClockFast];

@@ -45,8 +45,10 @@ pub struct Change {
     pub difference: BTreeMap<String, Value>,
     /// How sure the difference is, in standard deviations of one number.
     pub deviations: f64,
-    /// How far apart simulations of the vehicle before and after are after one second of the later flights, m/s.
-    pub impact: f64,
+    /// How far apart simulations of the vehicle before and after are after one second of the later flights, m/s; none
+    /// where the change is of what the simulator does not have.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impact: Option<f64>,
     /// Why it is no more than suspected.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,

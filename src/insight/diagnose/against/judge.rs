@@ -69,7 +69,7 @@ fn judge(fitted: &FittedSelection, suspects: &[Suspect], found: &FoundDifference
         after: sizes.after,
         difference: sizes.difference,
         deviations: squares.sqrt(),
-        impact,
+        impact: Some(impact),
         why,
     }
 }

@@ -48,7 +48,7 @@ fn change(weak: Weak, sign: f64) -> Option<Change> {
         after: named(after),
         difference,
         deviations: weak.loss / weak.half.max(1e-300) * NORMAL_95,
-        impact: impact(&weak),
+        impact: Some(impact(&weak)),
         why: None,
     })
 }

@@ -11,6 +11,9 @@ use crate::insight::diagnose::problem::Problem;
 use crate::model::effects::{self, Card, CompactNumber, EffectKind, Role};
 use std::ops::Range;
 
+/// Those that follow from the gains of a rate loop.
+pub const RESPONSES: [&str; 2] = ["rate_response", "yaw_response"];
+
 /// Something that may differ.
 #[derive(Clone, Debug)]
 pub struct Suspect {
@@ -58,14 +61,14 @@ fn compact() -> [Workshop; 7] {
             &CHANGED_TIME_CONSTANT,
         ),
         (
-            "rate_response",
+            RESPONSES[0],
             "response of roll and pitch",
             "roll and pitch follow the sticks more slowly or quickly: gains, filters, inertia",
             tau..tau + 2,
             &CHANGED_TIME_CONSTANT,
         ),
         (
-            "yaw_response",
+            RESPONSES[1],
             "response of yaw",
             "yaw follows the stick more slowly or quickly: gains, filters, inertia",
             tau + 2..tau + 3,

@@ -54,8 +54,9 @@ fn one(rank: usize, c: &Change) -> Markup {
                 }
             }
             p {
-                (format!("{:.0} standard deviations; ", c.deviations)) (digits(c.impact, c.impact, 2))
-                " m/s after a second."
+                (format!("{:.0} standard deviations", c.deviations))
+                @if let Some(impact) = c.impact { "; " (digits(impact, impact, 2)) " m/s after a second" }
+                "."
             }
         }
     }

@@ -1,0 +1,124 @@
+//! How a flight controller answers an error of its roll and pitch rates, by what it sends to the motors. Those outputs
+//! are clean where a gyro is noisy: behind the motors' lag they also tell how the vehicle turns, so that only the scale
+//! of rate and acceleration is taken from the gyro.
+
+mod outputs;
+
+use crate::base::stats::{mean, robust_sd};
+use crate::flight::Log;
+use crate::flight::series::held;
+use crate::flight::spans::Span;
+use crate::insight::estimate::gram::Grams;
+use crate::insight::estimate::inverse::inverse;
+use crate::insight::estimate::jackknife::jackknife;
+use crate::insight::estimate::robust::huber;
+use nalgebra::{DMatrix, DVector};
+use outputs::Outputs;
+
+/// Roll and pitch: what turns a vehicle about yaw is led by the rotors' own inertia.
+pub const AXES: usize = 2;
+/// Outputs are compared with those so long before, s: an integrator hardly moves meanwhile.
+const ANSWER_S: f64 = 0.016;
+/// Delays of commands, s.
+const DELAYS_S: [f64; 6] = [0.0, 0.004, 0.008, 0.012, 0.02, 0.03];
+/// Length of the stretches that the spread is taken over, s.
+const STRETCH_S: f64 = 3.0;
+/// Steps of the robust fit, its bound in standard deviations, and the share of an output that is as good as exact.
+const REWEIGHTED: usize = 20;
+const HUBER: f64 = 3.0;
+const EXACT: f64 = 0.01;
+
+/// A rate loop about one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateGain {
+    /// Motor output, squared, as a share of its most, that an error of 1 rad/s turns with, and its standard deviation.
+    pub gain: f64,
+    pub sd: f64,
+    /// What outputs of 1 turn, rad/s2, and the lag that they turn it with, s.
+    pub authority: f64,
+    pub lag_s: f64,
+    /// By how much the commands are late, s.
+    pub delay_s: f64,
+    /// Share of the squares of the turns that the outputs explain, and of the outputs that errors and turns explain.
+    pub turned: f64,
+    pub answered: f64,
+}
+
+/// Of roll and pitch; none where the outputs of four motors, rates or commands are not known, or do not tell it.
+pub fn rate_gains(log: &Log, usable: &[Span]) -> Option<[RateGain; AXES]> {
+    let outputs = Outputs::new(&log.motors, usable)?;
+    let gains = [0, 1].map(|k| about(&outputs, log, k));
+    Some([gains[0]?, gains[1]?])
+}
+
+/// The law about axis `k`.
+fn about(outputs: &Outputs, log: &Log, k: usize) -> Option<RateGain> {
+    let plant = outputs.plant(log, k)?;
+    let [behind, sum] = outputs.lagged(plant.pattern, plant.lag_s);
+    let (sent, rate): (Vec<f64>, Vec<f64>) = (log.setpoint.column(k), sum);
+    let apart = outputs.apart(ANSWER_S);
+    let laws = DELAYS_S.iter().filter_map(|&delay_s| {
+        let late: Vec<f64> = outputs.time.iter().map(|t| t - delay_s).collect();
+        let wanted = held(&log.setpoint.time_s, &sent, &late);
+        let at = outputs.pairs(apart, |i| outputs.usable[i] && outputs.free[i] && wanted[i].is_finite());
+        let moved = |x: &[f64], scale: f64| at.iter().map(|&i| scale * (x[i + apart] - x[i])).collect::<Vec<_>>();
+        let columns = vec![moved(&rate, plant.authority), moved(&behind, plant.authority), moved(&wanted, 1.0)];
+        let stretch = at.iter().map(|&i| ((outputs.time[i] - outputs.time[0]) / STRETCH_S) as u32).collect();
+        let law = law(columns, moved(&outputs.turning[plant.pattern], 1.0), stretch)?;
+        Some(RateGain { delay_s, authority: plant.authority.abs(), lag_s: plant.lag_s, turned: plant.turned, ..law })
+    });
+    laws.max_by(|a, b| a.answered.total_cmp(&b.answered))
+}
+
+/// Robust fit of the outputs `moved` by `columns`, the rate first; rows belong to a `stretch` of time each.
+fn law(columns: Vec<Vec<f64>>, moved: Vec<f64>, stretch: Vec<u32>) -> Option<RateGain> {
+    let n = columns.len();
+    let blocks = *stretch.last()? as usize + 1;
+    let mut weight = vec![1.0; moved.len()];
+    let mut left = moved.clone();
+    for _ in 0..REWEIGHTED {
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).zip(&weight).map(|((a, b), w)| a * b * w).sum::<f64>();
+        let square = DMatrix::from_fn(n, n, |i, j| product(&columns[i], &columns[j]));
+        let along = DVector::from_fn(n, |i, _| product(&columns[i], &moved));
+        let size = inverse(&square, &vec![0.0; n])? * along;
+        let one = |i: usize| moved[i] - (0..n).map(|j| size[j] * columns[j][i]).sum::<f64>();
+        left = (0..moved.len()).map(one).collect();
+        let sd = robust_sd(&left);
+        let weigh = |(e, y): (&f64, &f64)| huber(e / (sd + EXACT * y.abs()).max(1e-12), HUBER);
+        weight = left.iter().zip(&moved).map(weigh).collect();
+    }
+    let scaled = |x: &[f64]| vec![x.iter().zip(&weight).map(|(x, w)| x * w.sqrt()).collect::<Vec<f64>>()];
+    let all: Vec<Vec<Vec<f64>>> = columns.iter().chain([&moved, &left]).map(|x| scaled(x)).collect();
+    let grams = Grams::new(&all.iter().collect::<Vec<_>>(), &[stretch], blocks);
+    let own: Vec<usize> = (0..n).collect();
+    let square = inverse(&Grams::pick(&grams.sum, &own, &own), &vec![0.0; n])?;
+    let size = square * Grams::pick(&grams.sum, &own, &[n]);
+    let (covariance, _) = jackknife(&grams, &own, n + 1, &vec![0.0; n], 1)?;
+    let answered = 1.0 - grams.sum[(n + 1, n + 1)] / grams.sum[(n, n)];
+    let known = RateGain { gain: size[0].abs(), sd: covariance[(0, 0)].sqrt(), answered, ..RateGain::NONE };
+    (known.gain > 0.0 && answered.is_finite()).then_some(known)
+}
+
+impl RateGain {
+    const NONE: Self =
+        Self { gain: 0.0, sd: 0.0, authority: 0.0, lag_s: 0.0, delay_s: 0.0, turned: 0.0, answered: 0.0 };
+
+    /// Several flights of one vehicle as one: the middle of what they say, as well as the worst of them says it.
+    pub fn together(all: &[Self]) -> Option<Self> {
+        let of = |f: fn(&Self) -> f64| all.iter().map(f).collect::<Vec<f64>>();
+        let least = |x: Vec<f64>| x.into_iter().fold(f64::INFINITY, f64::min);
+        let gains = of(|g| g.gain);
+        let gain = mean(&gains);
+        let spread = gains.iter().map(|g| (g - gain).powi(2)).sum::<f64>().sqrt() / gains.len() as f64;
+        let own = of(|g| g.sd * g.sd).iter().sum::<f64>().sqrt() / gains.len() as f64;
+        (!all.is_empty()).then(|| Self {
+            gain,
+            sd: own.hypot(spread),
+            authority: mean(&of(|g| g.authority)),
+            lag_s: mean(&of(|g| g.lag_s)),
+            delay_s: mean(&of(|g| g.delay_s)),
+            turned: least(of(|g| g.turned)),
+            answered: least(of(|g| g.answered)),
+        })
+    }
+}
