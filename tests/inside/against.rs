@@ -96,7 +96,7 @@ fn what_the_model_gets_wrong_of_both_flights_does_not_hide_a_change() {
     assert!(!same.changed, "{:?}", named(&same));
 }
 
-/// Slow motors turn a vehicle as they can, whatever the gains are: its rates hardly tell, what its motors are sent does.
+/// Slow motors turn a vehicle as they can, whatever the gains are: rates hardly tell, what the motors are sent does.
 #[test]
 fn gains_of_the_rate_loop_are_named_by_the_motors() {
     let airframe = Airframe::draw(SEED);

@@ -32,7 +32,7 @@ pub struct Outputs {
 }
 
 /// How the vehicle turns: the pattern that does it, its lag, its authority, and the share of the turns explained.
-pub struct Plant {
+pub struct Turning {
     pub pattern: usize,
     pub lag_s: f64,
     pub authority: f64,
@@ -90,7 +90,7 @@ impl Outputs {
     }
 
     /// The pattern and the lag that explain the rate about axis `k` best.
-    pub fn plant(&self, log: &Log, k: usize) -> Option<Plant> {
+    pub fn plant(&self, log: &Log, k: usize) -> Option<Turning> {
         let reach = 3.0 * period(&log.imu.time_s);
         let rate = interpolated(&log.imu.time_s, &log.imu.column(k), &self.time, reach);
         let apart = self.apart(TURN_S);
@@ -101,7 +101,7 @@ impl Outputs {
             let (pattern, lag_s) = ((i % 3) as usize, LAGS.0 * LAGS.1.powi(i / 3));
             let x = turned(&self.lagged(pattern, lag_s)[1]);
             let (along, own) = (dot(&x, &measured), dot(&x, &x).max(1e-300));
-            Plant { pattern, lag_s, authority: along / own, turned: along * along / own / dot(&measured, &measured) }
+            Turning { pattern, lag_s, authority: along / own, turned: along * along / own / dot(&measured, &measured) }
         });
         plants.filter(|p| p.turned.is_finite()).max_by(|a, b| a.turned.total_cmp(&b.turned))
     }
