@@ -48,7 +48,7 @@ CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were th
     /// The lag of the motors.
     SAME_LAG = 0.2, Assumed("within a step of 14 % where it was");
     /// The delay of the commands, s.
-    SAME_DELAY_S = 0.005, Assumed("a filter of 4 ms on the sticks reads as gains of 60 %");
+    SAME_LOOP_DELAY_S = 0.005, Assumed("a filter of 4 ms on the sticks reads as gains of 60 %");
     /// Share of the best gain from which the plainest of those that are tied is preferred.
     PLAIN_SHARE = 0.9, Assumed("slower gains did 0.95 of what a response that slows with the voltage did");
     /// Squared standard deviations over stretches of time from which a difference is worth a fit.

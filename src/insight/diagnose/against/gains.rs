@@ -5,8 +5,8 @@ use super::change::Change;
 use super::suspect::RESPONSES;
 use crate::base::stats::NORMAL_95;
 use crate::insight::criteria::changed::{
-    CHANGED_GAIN, GAIN_ANSWERED, GAIN_DEVIATIONS, GAIN_ERROR, GAIN_TURNED, GAINS_DEVIATIONS, SAME_AUTHORITY,
-    SAME_DELAY_S, SAME_LAG,
+    CHANGED_GAIN, GAIN_ANSWERED, GAIN_DEVIATIONS, GAIN_ERROR, GAIN_TURNED, GAINS_DEVIATIONS, SAME_AUTHORITY, SAME_LAG,
+    SAME_LOOP_DELAY_S,
 };
 use crate::insight::diagnose::finding::{Status, Value};
 use crate::insight::diagnose::rate_gains::{AXES, RateGain};
@@ -82,7 +82,7 @@ fn told([a, b]: &[RateGain; 2]) -> bool {
         && known(b)
         && same(a.authority, b.authority, SAME_AUTHORITY.get())
         && same(a.lag_s, b.lag_s, SAME_LAG.get())
-        && (a.delay_s - b.delay_s).abs() < SAME_DELAY_S.get()
+        && (a.delay_s - b.delay_s).abs() < SAME_LOOP_DELAY_S.get()
 }
 
 #[cfg(test)]
@@ -98,7 +98,7 @@ mod tests {
         let pair = |before: RateGain, after: RateGain| [before, after];
         let less = pair(axis(0.15), axis(0.09));
         let found = changed(&[less, pair(axis(0.13), axis(0.08))]).expect("gains");
-        assert!((found.difference["gain.roll"].value + 0.06).abs() < 1e-12 && found.deviations > 10.0, "{found:?}");
+        assert!((found.difference["gain.roll"].value + 0.06).abs() < 1e-12 && found.deviations > 7.0, "{found:?}");
         assert!(changed(&[less, pair(axis(0.13), axis(0.12))]).is_none(), "one axis alone");
         assert!(changed(&[less, pair(axis(0.09), axis(0.15))]).is_none(), "one up, one down");
         for other in [
