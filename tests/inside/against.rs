@@ -6,7 +6,7 @@ use crate::truth::hidden::{Setting, Style, fly};
 use crate::truth::other::{self, Airframe};
 use racer::flight::Log;
 use racer::insight::diagnose::against::{Changes, compare};
-use racer::insight::quality::check;
+use racer::insight::quality::{Quality, check};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 
@@ -17,6 +17,11 @@ fn flown(vehicle: &Vehicle, seed: u64, effects: &[(&str, f64)]) -> Log {
     let mut rng = StdRng::seed_from_u64(SEED);
     let hidden: Vec<Hidden> = effects.iter().map(|(id, size)| Hidden::sized(id, *size, vehicle, &mut rng)).collect();
     fly(vehicle, &hidden, &Setting { seed, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited })
+}
+
+fn flown_other(airframe: &Airframe, seed: u64) -> Quality {
+    let setting = Setting { seed, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
+    check(&other::fly(airframe, &[], &setting))
 }
 
 fn compared(before: &Log, after: &Log) -> Changes {
@@ -79,12 +84,8 @@ fn what_the_model_gets_wrong_of_both_flights_does_not_hide_a_change() {
     let airframe = Airframe::draw(SEED);
     let mut slower = airframe.clone();
     slower.max_rate = slower.max_rate.map(|rate| 0.85 * rate);
-    let flown = |airframe: &Airframe, seed: u64| {
-        let setting = Setting { seed, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
-        check(&other::fly(airframe, &[], &setting))
-    };
     let vehicle = airframe.nominal().in_racer();
-    let changes = compare(vec![flown(&airframe, 1)], vec![flown(&slower, 2)], &vehicle, &mut |_, _| ());
+    let changes = compare(vec![flown_other(&airframe, 1)], vec![flown_other(&slower, 2)], &vehicle, &mut |_, _| ());
     assert_eq!(named(&changes), ["full_stick_rates"]);
     let change = &changes.changes[0];
     for axis in ["roll", "pitch"] {
@@ -92,7 +93,7 @@ fn what_the_model_gets_wrong_of_both_flights_does_not_hide_a_change() {
         let share = change.difference[&name].value / change.before[&name].value;
         assert!((share + 0.15).abs() < 0.02, "{axis}: {share}");
     }
-    let same = compare(vec![flown(&airframe, 1)], vec![flown(&airframe, 2)], &vehicle, &mut |_, _| ());
+    let same = compare(vec![flown_other(&airframe, 1)], vec![flown_other(&airframe, 2)], &vehicle, &mut |_, _| ());
     assert!(!same.changed, "{:?}", named(&same));
 }
 
@@ -102,12 +103,8 @@ fn gains_of_the_rate_loop_are_named_by_the_motors() {
     let airframe = Airframe::draw(SEED);
     let mut softer = airframe.clone();
     softer.bandwidth = softer.bandwidth.map(|bandwidth| 0.6 * bandwidth);
-    let flown = |airframe: &Airframe, seed: u64| {
-        let setting = Setting { seed, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
-        check(&other::fly(airframe, &[], &setting))
-    };
     let vehicle = airframe.nominal().in_racer();
-    let changes = compare(vec![flown(&airframe, 1)], vec![flown(&softer, 2)], &vehicle, &mut |_, _| ());
+    let changes = compare(vec![flown_other(&airframe, 1)], vec![flown_other(&softer, 2)], &vehicle, &mut |_, _| ());
     assert_eq!(named(&changes), ["rate_gains"]);
     let change = &changes.changes[0];
     for axis in ["gain.roll", "gain.pitch"] {

@@ -89,7 +89,7 @@ fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch, g
         changes.retain(|c| c.cause != motor.cause);
         changes.push(motor);
     }
-    gains::lead(gains, &mut changes);
+    gains::replace_response(gains, &mut changes);
     // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first, the
     // surest of it before all, told from all others or not.
     let own = [Role::ConstantError, Role::ClockFast];

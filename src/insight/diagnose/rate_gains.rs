@@ -1,6 +1,9 @@
 //! How a flight controller answers an error of its roll and pitch rates, by what it sends to the motors. Those outputs
 //! are clean where a gyro is noisy: behind the motors' lag they also tell how the vehicle turns, so that only the scale
 //! of rate and acceleration is taken from the gyro.
+//!
+//! The vehicle turns by `w' = a v` with `tau v' = u - v`, u the outputs' squares in the pattern of the axis; the loop
+//! answers by `du = gain a d(int v) + g1 d(a v) + g2 d(setpoint)` over [`ANSWER_S`].
 
 mod outputs;
 
@@ -31,16 +34,19 @@ const EXACT: f64 = 0.01;
 /// A rate loop about one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateGain {
-    /// Motor output, squared, as a share of its most, that an error of 1 rad/s turns with, and its standard deviation.
+    /// Motor output, squared, as a share of its most, that an error of 1 rad/s turns with.
     pub gain: f64,
+    /// Its standard deviation.
     pub sd: f64,
-    /// What outputs of 1 turn, rad/s2, and the lag that they turn it with, s.
+    /// What outputs of 1 turn, rad/s2.
     pub authority: f64,
+    /// The lag that they turn it with, s.
     pub lag_s: f64,
     /// By how much the commands are late, s.
     pub delay_s: f64,
-    /// Share of the squares of the turns that the outputs explain, and of the outputs that errors and turns explain.
+    /// Share of the squares of the turns that the outputs explain, 0..1.
     pub turned: f64,
+    /// Share of the squares of the outputs that errors and turns explain, 0..1.
     pub answered: f64,
 }
 
@@ -75,12 +81,12 @@ fn law(columns: Vec<Vec<f64>>, moved: Vec<f64>, stretch: Vec<u32>) -> Option<Rat
     let n = columns.len();
     let blocks = *stretch.last()? as usize + 1;
     let mut weight = vec![1.0; moved.len()];
-    let mut left = moved.clone();
+    let (mut size, mut left) = (DVector::zeros(n), moved.clone());
     for _ in 0..REWEIGHTED {
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).zip(&weight).map(|((a, b), w)| a * b * w).sum::<f64>();
         let square = DMatrix::from_fn(n, n, |i, j| product(&columns[i], &columns[j]));
         let along = DVector::from_fn(n, |i, _| product(&columns[i], &moved));
-        let size = inverse(&square, &vec![0.0; n])? * along;
+        size = inverse(&square, &vec![0.0; n])? * along;
         let one = |i: usize| moved[i] - (0..n).map(|j| size[j] * columns[j][i]).sum::<f64>();
         left = (0..moved.len()).map(one).collect();
         let sd = robust_sd(&left);
@@ -91,8 +97,6 @@ fn law(columns: Vec<Vec<f64>>, moved: Vec<f64>, stretch: Vec<u32>) -> Option<Rat
     let all: Vec<Vec<Vec<f64>>> = columns.iter().chain([&moved, &left]).map(|x| scaled(x)).collect();
     let grams = Grams::new(&all.iter().collect::<Vec<_>>(), &[stretch], blocks);
     let own: Vec<usize> = (0..n).collect();
-    let square = inverse(&Grams::pick(&grams.sum, &own, &own), &vec![0.0; n])?;
-    let size = square * Grams::pick(&grams.sum, &own, &[n]);
     let (covariance, _) = jackknife(&grams, &own, n + 1, &vec![0.0; n], 1)?;
     let answered = 1.0 - grams.sum[(n + 1, n + 1)] / grams.sum[(n, n)];
     let known = RateGain { gain: size[0].abs(), sd: covariance[(0, 0)].sqrt(), answered, ..RateGain::NONE };

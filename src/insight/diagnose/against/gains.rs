@@ -2,7 +2,6 @@
 //! them: motors that are slow, or at an end of their range, turn the vehicle as they can.
 
 use super::change::Change;
-use super::suspect::RESPONSES;
 use crate::base::stats::NORMAL_95;
 use crate::insight::criteria::changed::{
     CHANGED_GAIN, GAIN_ANSWERED, GAIN_DEVIATIONS, GAIN_ERROR, GAIN_TURNED, GAINS_DEVIATIONS, SAME_AUTHORITY, SAME_LAG,
@@ -17,11 +16,15 @@ const NAMES: [&str; AXES] = ["roll", "pitch"];
 /// Whether a flight is one of the later, and its gains.
 pub type FlightGains = (bool, Option<[RateGain; AXES]>);
 
-/// What changed of the gains, in the place of the responses among `changes` that follow from them.
-pub fn lead(flights: &[FlightGains], changes: &mut Vec<Change>) {
+/// The compact model's number that follows from these gains.
+const RESPONSE: &str = "rate_response";
+
+/// What changed of the gains, in the place of the response of roll and pitch among `changes`. Yaw's stays: its gains are
+/// not looked at.
+pub fn replace_response(flights: &[FlightGains], changes: &mut Vec<Change>) {
     let Some(gains) = find(flights) else { return };
-    let responses = changes.extract_if(.., |c| RESPONSES.contains(&c.cause));
-    let impact = responses.filter_map(|c| c.impact).max_by(f64::total_cmp);
+    let response = changes.extract_if(.., |c| c.cause == RESPONSE);
+    let impact = response.filter_map(|c| c.impact).last();
     changes.push(Change { impact, ..gains });
 }
 

@@ -11,9 +11,6 @@ use crate::insight::diagnose::problem::Problem;
 use crate::model::effects::{self, Card, CompactNumber, EffectKind, Role};
 use std::ops::Range;
 
-/// Those that follow from the gains of a rate loop.
-pub const RESPONSES: [&str; 2] = ["rate_response", "yaw_response"];
-
 /// Something that may differ.
 #[derive(Clone, Debug)]
 pub struct Suspect {
@@ -61,14 +58,14 @@ fn compact() -> [Workshop; 7] {
             &CHANGED_TIME_CONSTANT,
         ),
         (
-            RESPONSES[0],
+            "rate_response",
             "response of roll and pitch",
             "roll and pitch follow the sticks more slowly or quickly: gains, filters, inertia",
             tau..tau + 2,
             &CHANGED_TIME_CONSTANT,
         ),
         (
-            RESPONSES[1],
+            "yaw_response",
             "response of yaw",
             "yaw follows the stick more slowly or quickly: gains, filters, inertia",
             tau + 2..tau + 3,

@@ -21,25 +21,32 @@ const LIMITED: f64 = 0.97;
 
 /// What the motors were sent, thinned.
 pub struct Outputs {
+    /// s.
     pub time: Vec<f64>,
     /// Usual time between two, s.
     step: f64,
+    /// Whether all motors are known there, in usable flight.
     pub usable: Vec<bool>,
-    /// Squares, by pattern, a quarter of their sum.
+    /// Squares as shares of the largest output's, by pattern: a quarter of their sum, -0.5..0.5.
     pub turning: [Vec<f64>; 3],
     /// Whether no motor was at an end of its range and no turn may have been limited, there and at the samples beside.
     pub free: Vec<bool>,
 }
 
-/// How the vehicle turns: the pattern that does it, its lag, its authority, and the share of the turns explained.
-pub struct Turning {
+/// How the vehicle turns about an axis.
+pub struct TurningPlant {
+    /// Of [`PATTERNS`], the one that turns it.
     pub pattern: usize,
+    /// Lag of the motors, s.
     pub lag_s: f64,
+    /// Angular acceleration by a pattern's output of 1, rad/s2, with its sign.
     pub authority: f64,
+    /// Share of the squares of the turns that is explained, 0..1.
     pub turned: f64,
 }
 
 impl Outputs {
+    /// Of the `usable` times; none where there are not four motors that come often enough.
     pub fn new(motors: &Stream<MOTORS>, usable: &[Span]) -> Option<Self> {
         let every = (1.0 / (period(&motors.time_s) * ENOUGH_HZ) * 1.05).floor().max(1.0) as usize;
         let columns = columns(motors).filter(|columns| columns.len() == FOUR)?;
@@ -63,7 +70,7 @@ impl Outputs {
         Some(Self { step: period(&time), time, usable, turning, free })
     }
 
-    /// The outputs of a pattern behind a lag, s, and what they sum up to by each sample.
+    /// The outputs of a pattern behind a lag, s, and their integral by each sample, s.
     pub fn lagged(&self, pattern: usize, lag_s: f64) -> [Vec<f64>; 2] {
         let (mut now, mut sum) = (0.0, 0.0);
         let mut out = [Vec::with_capacity(self.time.len()), Vec::with_capacity(self.time.len())];
@@ -85,12 +92,13 @@ impl Outputs {
         (0..self.time.len().saturating_sub(apart)).filter(|&i| fit(i) && fit(i + apart)).filter(near).collect()
     }
 
+    /// How many samples are so long.
     pub fn apart(&self, seconds: f64) -> usize {
         ((seconds / self.step).round() as usize).max(1)
     }
 
     /// The pattern and the lag that explain the rate about axis `k` best.
-    pub fn plant(&self, log: &Log, k: usize) -> Option<Turning> {
+    pub fn plant(&self, log: &Log, k: usize) -> Option<TurningPlant> {
         let reach = 3.0 * period(&log.imu.time_s);
         let rate = interpolated(&log.imu.time_s, &log.imu.column(k), &self.time, reach);
         let apart = self.apart(TURN_S);
@@ -101,7 +109,12 @@ impl Outputs {
             let (pattern, lag_s) = ((i % 3) as usize, LAGS.0 * LAGS.1.powi(i / 3));
             let x = turned(&self.lagged(pattern, lag_s)[1]);
             let (along, own) = (dot(&x, &measured), dot(&x, &x).max(1e-300));
-            Turning { pattern, lag_s, authority: along / own, turned: along * along / own / dot(&measured, &measured) }
+            TurningPlant {
+                pattern,
+                lag_s,
+                authority: along / own,
+                turned: along * along / own / dot(&measured, &measured),
+            }
         });
         plants.filter(|p| p.turned.is_finite()).max_by(|a, b| a.turned.total_cmp(&b.turned))
     }
