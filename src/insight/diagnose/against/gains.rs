@@ -19,7 +19,7 @@ pub type FlightGains = (bool, Option<[RateGain; AXES]>);
 /// The compact model's number that follows from these gains.
 const RESPONSE: &str = "rate_response";
 
-/// What changed of the gains, in the place of the response of roll and pitch among `changes`. Yaw's stays: its gains are
+/// What changed of the gains, in the place of the response of roll and pitch in `changes`. Yaw's stays: its gains are
 /// not looked at.
 pub fn replace_response(flights: &[FlightGains], changes: &mut Vec<Change>) {
     let Some(gains) = find(flights) else { return };
