@@ -56,7 +56,7 @@ pub mod place;
 pub mod predict;
 pub mod problem;
 pub mod rank;
-pub mod rate_gains;
+pub mod rate_loop;
 pub mod record;
 pub mod replication;
 pub mod score;

@@ -114,3 +114,19 @@ fn gains_of_the_rate_loop_are_named_by_the_motors() {
         assert!((low..high).contains(&(-0.4 * change.before[axis].value)), "{axis}: {low} to {high}");
     }
 }
+
+/// As with heavier arms: all that the rates do otherwise follows from it.
+#[test]
+fn turning_authority_is_named_by_the_motors_and_not_what_follows_from_it() {
+    let airframe = Airframe::draw(SEED);
+    let mut lazy = airframe.clone();
+    lazy.authority = lazy.authority.map(|authority| 0.5 * authority);
+    lazy.bandwidth = lazy.bandwidth.map(|bandwidth| 0.5 * bandwidth);
+    let vehicle = airframe.nominal().in_racer();
+    let changes = compare(vec![flown_other(&airframe, 1)], vec![flown_other(&lazy, 2)], &vehicle, &mut |_, _| ());
+    assert_eq!(named(&changes), ["turning_authority"]);
+    for (axis, value) in &changes.changes[0].difference {
+        let before = changes.changes[0].before[axis].value;
+        assert!((value.low..value.high).contains(&(-0.5 * before)), "{axis}: {value:?} of {before}");
+    }
+}

@@ -29,6 +29,8 @@ CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were th
     CHANGED_DISCHARGE = 0.2, Assumed("that of a move against the base that matters");
     /// What a changed effect does after a second, m/s.
     CHANGED_IMPACT = 0.02, Assumed("of eight pairs, changes that were found did 0.8 and more, a false one 0.017");
+    /// Change of another error of a sensor that matters, in small typical sizes.
+    CHANGED_SENSOR = 1.5, Assumed("of 146 pairs without a change three were given one, of 0.8 and 0.9");
     /// Change of a sensor's constant error that matters, in small typical sizes.
     CHANGED_BIAS = 4.0, Assumed("it is another after every switching on");
     /// Change of a rate loop's gain, by motor outputs, that matters.
@@ -49,6 +51,16 @@ CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were th
     SAME_LAG = 0.2, Assumed("within a step of 14 % where it was");
     /// The delay of the commands, s.
     SAME_LOOP_DELAY_S = 0.005, Assumed("a filter of 4 ms on the sticks reads as gains of 60 %");
+    /// Change of what motor outputs turn that matters, as a share, beyond what the voltage may have done.
+    CHANGED_AUTHORITY = 0.3, Assumed("a load of 30 % does less; 147 pairs without another: up to 17 %");
+    /// Its error beside the spread over the time, as a share.
+    AUTHORITY_ERROR = 0.04, Assumed("pairs without another authority differ by 5 %");
+    /// Share of the turns about yaw that motor outputs have to explain.
+    YAW_TURNED = 0.6, Assumed("0.5 to 0.97 of the flights of such pairs, all within 7 % of their authority");
+    /// Change of the lag that motor outputs turn with that matters.
+    CHANGED_LAG = 0.25, Assumed("two steps of 14 % about both axes: of 197 pairs none without another");
+    /// Error of such a lag, as a share.
+    LAG_ERROR = 0.07, Assumed("half a step");
     /// Share of the best gain from which the plainest of those that are tied is preferred.
     PLAIN_SHARE = 0.9, Assumed("slower gains did 0.95 of what a response that slows with the voltage did");
     /// Squared standard deviations over stretches of time from which a difference is worth a fit.

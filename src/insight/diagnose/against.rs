@@ -15,24 +15,23 @@ mod motor;
 mod search;
 mod sizes;
 mod suspect;
+mod turning;
+mod would_show;
 
 use super::accident;
 use super::contrast::Contrast;
 use super::finding::{Diagnosis, Status};
 use super::fitted::FittedSelection;
 use super::problem::Problem;
-use super::rate_gains::rate_gains;
+use super::rate_loop::{RateLoop, rate_loop, together};
 use super::select::Selection;
 use super::shown;
 use super::size::is_material;
 use crate::insight::Watch;
-use crate::insight::criteria::flown::SEEN_DEVIATIONS;
 use crate::insight::quality::Quality;
 use crate::model::effects::{self, Role};
 use crate::model::vehicle::Vehicle;
 pub use change::{Both, Change, Changes, WouldShow};
-use columns::Tested;
-use gains::FlightGains;
 use rayon::prelude::*;
 use search::DifferenceSearch;
 use suspect::{FoundDifference, Suspect};
@@ -41,8 +40,9 @@ use suspect::{FoundDifference, Suspect};
 pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Changes {
     let later: Vec<bool> = before.iter().map(|_| false).chain(after.iter().map(|_| true)).collect();
     let all: Vec<Quality> = before.into_iter().chain(after).collect();
-    let gains = all.par_iter().map(|q| rate_gains(&q.log, &q.usable)).collect::<Vec<_>>();
-    let gains: Vec<FlightGains> = later.iter().copied().zip(gains).collect();
+    let loops = all.par_iter().map(|q| rate_loop(&q.log, &q.usable)).collect::<Vec<_>>();
+    let (earlier, last) = loops.split_at(later.iter().filter(|later| !**later).count());
+    let loops = together(earlier).zip(together(last)).map(|(before, after)| [before, after]);
     let contrasted = |logs| {
         let mut problem = super::problem(logs, vehicle);
         problem.contrast = Some(Contrast::new(&mut problem.model, later.clone()));
@@ -57,8 +57,8 @@ pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, wat
     watch("comparing", 0.5);
     let selection = Selection { whitener: alike::deaf(&problem, &selection), ..selection };
     let search = DifferenceSearch::new(&problem, &suspects, selection).run();
-    let would_show = would_show(&problem, &search.tested, &suspects);
-    Changes { would_show, left_out, ..changes(&problem, &suspects, &search, &gains) }
+    let would_show = would_show::all(&problem, &search.tested, &suspects);
+    Changes { would_show, left_out, ..changes(&problem, &suspects, &search, loops.as_ref()) }
 }
 
 impl Changes {
@@ -78,7 +78,12 @@ fn allowed(search: &DifferenceSearch, suspects: &[Suspect]) -> Vec<FoundDifferen
 }
 
 /// The answer.
-fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch, gains: &[FlightGains]) -> Changes {
+fn changes(
+    problem: &Problem,
+    suspects: &[Suspect],
+    search: &DifferenceSearch,
+    loops: Option<&[RateLoop; 2]>,
+) -> Changes {
     let fitted = &FittedSelection::new(problem, &search.selection);
     let mut changes = judge::all(fitted, suspects, &search.found);
     changes.extend(search.rejected.iter().cloned());
@@ -89,7 +94,10 @@ fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch, g
         changes.retain(|c| c.cause != motor.cause);
         changes.push(motor);
     }
-    gains::replace_response(gains, &mut changes);
+    if let Some(loops) = loops {
+        gains::replace_response(loops, &mut changes);
+        turning::replace_what_follows(loops, &mut changes);
+    }
     // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first, the
     // surest of it before all, told from all others or not.
     let own = [Role::ConstantError, Role::ClockFast];
@@ -116,22 +124,4 @@ fn changes(problem: &Problem, suspects: &[Suspect], search: &DifferenceSearch, g
 fn names(problem: &Problem, later: bool) -> Vec<String> {
     let sets = problem.contrast.iter().flat_map(|c| &c.later);
     problem.records.iter().zip(sets).filter(|(_, set)| **set == later).map(|(r, _)| r.name.clone()).collect()
-}
-
-/// The smallest differences that would have been seen, each where it is seen best.
-fn would_show(problem: &Problem, tested: &[Tested], suspects: &[Suspect]) -> Vec<WouldShow> {
-    let mut out: Vec<WouldShow> = Vec::new();
-    for t in tested {
-        let spread: f64 = t.score.blocks.iter().map(|(_, u)| u[(0, 0)].powi(2)).sum::<f64>().sqrt();
-        let size = t.direction.as_ref().map_or(1.0, |d| d.start[0].1.abs());
-        let smallest = SEEN_DEVIATIONS.get() * spread / t.score.information[0].max(1e-300) * size;
-        let suspect = &suspects[t.suspect];
-        let unit = suspect.own.first().map_or("1", |&k| problem.model.numbers[k].unit);
-        let large = suspect.card.map(|card| card.parameters[0].typical[1]);
-        match out.iter_mut().find(|w| w.cause == suspect.id) {
-            Some(known) => known.smallest = known.smallest.min(smallest),
-            None => out.push(WouldShow { cause: suspect.id, name: suspect.name, smallest, large, unit }),
-        }
-    }
-    out
 }

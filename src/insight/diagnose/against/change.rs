@@ -72,7 +72,7 @@ pub struct WouldShow {
     pub cause: &'static str,
     /// What people call it.
     pub name: &'static str,
-    /// Of its first parameter; a share of the numbers of the compact model.
+    /// Of its first parameter, or of any axis where they are several; a share of the numbers of the compact model.
     pub smallest: f64,
     /// A large size of an effect.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -8,45 +8,34 @@ use crate::insight::criteria::changed::{
     SAME_LOOP_DELAY_S,
 };
 use crate::insight::diagnose::finding::{Status, Value};
-use crate::insight::diagnose::rate_gains::{AXES, RateGain};
+use crate::insight::diagnose::rate_loop::{AXES, RateGain, RateLoop};
 use std::collections::BTreeMap;
 
 const NAMES: [&str; AXES] = ["roll", "pitch"];
-
-/// Whether a flight is one of the later, and its gains.
-pub type FlightGains = (bool, Option<[RateGain; AXES]>);
 
 /// The compact model's number that follows from these gains.
 const RESPONSE: &str = "rate_response";
 
 /// What changed of the gains, in the place of the response of roll and pitch in `changes`. Yaw's stays: its gains are
 /// not looked at.
-pub fn replace_response(flights: &[FlightGains], changes: &mut Vec<Change>) {
-    let Some(gains) = find(flights) else { return };
+pub fn replace_response(loops: &[RateLoop; 2], changes: &mut Vec<Change>) {
+    let Some(gains) = changed(loops) else { return };
     let response = changes.extract_if(.., |c| c.cause == RESPONSE);
     let impact = response.filter_map(|c| c.impact).last();
     changes.push(Change { impact, ..gains });
 }
 
 /// Gains of roll and pitch that both moved one way, where nothing else of the loop did.
-fn find(flights: &[FlightGains]) -> Option<Change> {
-    let set = |later: bool, k: usize| {
-        let flights = flights.iter().filter(|(set, _)| *set == later);
-        RateGain::together(&flights.map(|(_, gains)| Some((*gains)?[k])).collect::<Option<Vec<RateGain>>>()?)
-    };
-    let pairs: Option<Vec<_>> = (0..AXES).map(|k| Some([set(false, k)?, set(true, k)?])).collect();
-    changed(&pairs?)
-}
-
-/// The change of each axis' gain from one set to the other.
-fn changed(pairs: &[[RateGain; 2]]) -> Option<Change> {
+fn changed(loops: &[RateLoop; 2]) -> Option<Change> {
+    let [before, after] = [loops[0].gains?, loops[1].gains?];
+    let pairs: [[RateGain; 2]; AXES] = [0, 1].map(|k| [before[k], after[k]]);
     let moved: Vec<f64> = pairs.iter().map(|[a, b]| (b.gain / a.gain).ln()).collect();
     let sd = |[a, b]: &[RateGain; 2]| (error(a) / a.gain).hypot(error(b) / b.gain);
-    let sure: Vec<f64> = moved.iter().zip(pairs).map(|(moved, pair)| moved / sd(pair)).collect();
+    let sure: Vec<f64> = moved.iter().zip(&pairs).map(|(moved, pair)| moved / sd(pair)).collect();
     let one_way = moved.iter().all(|m| m.signum() == moved[0].signum() && m.abs() > (1.0 + CHANGED_GAIN.get()).ln());
     let deviations = sure.iter().map(|s| s * s).sum::<f64>().sqrt();
     let evident = sure.iter().all(|s| s.abs() > GAIN_DEVIATIONS.get()) && deviations > GAINS_DEVIATIONS.get();
-    if !(one_way && evident && pairs.iter().all(told)) {
+    if !(one_way && evident && (0..AXES).all(|k| told(loops, &pairs[k], k))) {
         return None;
     }
     let value = |value: f64, sd: f64| {
@@ -54,7 +43,7 @@ fn changed(pairs: &[[RateGain; 2]]) -> Option<Change> {
         Value { value, low: value - half, high: value + half, unit: "of the most of a motor, per rad/s".into() }
     };
     let of = |f: &dyn Fn(&[RateGain; 2]) -> Value| -> BTreeMap<String, Value> {
-        NAMES.iter().zip(pairs).map(|(name, pair)| (format!("gain.{name}"), f(pair))).collect()
+        NAMES.iter().zip(&pairs).map(|(name, pair)| (format!("gain.{name}"), f(pair))).collect()
     };
     Some(Change {
         cause: "rate_gains",
@@ -78,41 +67,50 @@ fn error(g: &RateGain) -> f64 {
 
 /// Whether both sets tell the gain, and have the same vehicle and the same delay about it: where another authority,
 /// other motors or another filter are at work the outputs are others with the same gains.
-fn told([a, b]: &[RateGain; 2]) -> bool {
-    let known = |g: &RateGain| g.turned > GAIN_TURNED.get() && g.answered > GAIN_ANSWERED.get();
-    let same = |x: f64, y: f64, within: f64| (x / y).ln().abs() < (1.0 + within).ln();
-    known(a)
-        && known(b)
-        && same(a.authority, b.authority, SAME_AUTHORITY.get())
-        && same(a.lag_s, b.lag_s, SAME_LAG.get())
-        && (a.delay_s - b.delay_s).abs() < SAME_LOOP_DELAY_S.get()
+fn told(loops: &[RateLoop; 2], gains: &[RateGain; 2], k: usize) -> bool {
+    let plants = [loops[0].plants[k], loops[1].plants[k]];
+    let same = |[x, y]: [f64; 2], within: f64| (x / y).ln().abs() < (1.0 + within).ln();
+    plants.iter().all(|p| p.turned > GAIN_TURNED.get())
+        && gains.iter().all(|g| g.answered > GAIN_ANSWERED.get())
+        && same(plants.map(|p| p.authority), SAME_AUTHORITY.get())
+        && same(plants.map(|p| p.lag_s), SAME_LAG.get())
+        && (gains[0].delay_s - gains[1].delay_s).abs() < SAME_LOOP_DELAY_S.get()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::insight::diagnose::rate_loop::TurningPlant;
 
-    fn axis(gain: f64) -> RateGain {
-        RateGain { gain, sd: 0.003, authority: 400.0, lag_s: 0.03, delay_s: 0.0, turned: 0.98, answered: 0.99 }
+    /// With these gains of roll and pitch.
+    fn set(gains: [f64; AXES]) -> RateLoop {
+        let plant = TurningPlant { pattern: 0, lag_s: 0.03, authority: 400.0, sd: 4.0, turned: 0.98 };
+        let gains = gains.map(|gain| RateGain { gain, sd: 0.003, delay_s: 0.0, answered: 0.99 });
+        RateLoop { plants: [plant; 3], gains: Some(gains), volts: 24.0 }
+    }
+
+    fn after(change: impl Fn(&mut TurningPlant, &mut RateGain)) -> RateLoop {
+        let mut set = set([0.09, 0.08]);
+        change(&mut set.plants[0], &mut set.gains.as_mut().expect("gains")[0]);
+        set
     }
 
     #[test]
     fn named_where_both_axes_say_it_and_the_vehicle_is_the_same() {
-        let pair = |before: RateGain, after: RateGain| [before, after];
-        let less = pair(axis(0.15), axis(0.09));
-        let found = changed(&[less, pair(axis(0.13), axis(0.08))]).expect("gains");
+        let before = || set([0.15, 0.13]);
+        let found = changed(&[before(), set([0.09, 0.08])]).expect("gains");
         assert!((found.difference["gain.roll"].value + 0.06).abs() < 1e-12 && found.deviations > 7.0, "{found:?}");
-        assert!(changed(&[less, pair(axis(0.13), axis(0.12))]).is_none(), "one axis alone");
-        assert!(changed(&[less, pair(axis(0.09), axis(0.15))]).is_none(), "one up, one down");
+        assert!(changed(&[before(), set([0.09, 0.12])]).is_none(), "one axis alone");
+        assert!(changed(&[before(), set([0.09, 0.2])]).is_none(), "one up, one down");
         for other in [
-            RateGain { authority: 300.0, ..axis(0.09) },
-            RateGain { lag_s: 0.02, ..axis(0.09) },
-            RateGain { delay_s: 0.008, ..axis(0.09) },
-            RateGain { turned: 0.5, ..axis(0.09) },
-            RateGain { answered: 0.9, ..axis(0.09) },
-            RateGain { sd: 0.03, ..axis(0.09) },
+            after(|plant, _| plant.authority = 300.0),
+            after(|plant, _| plant.lag_s = 0.02),
+            after(|plant, _| plant.turned = 0.5),
+            after(|_, gain| gain.delay_s = 0.008),
+            after(|_, gain| gain.answered = 0.9),
+            after(|_, gain| gain.sd = 0.03),
         ] {
-            assert!(changed(&[pair(axis(0.15), other), less]).is_none(), "{other:?}");
+            assert!(changed(&[before(), other.clone()]).is_none(), "{other:?}");
         }
     }
 }

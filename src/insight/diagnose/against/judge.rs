@@ -7,8 +7,8 @@ use super::sizes;
 use super::suspect::{FoundDifference, Suspect};
 use crate::base::stats::chi_squared_chance;
 use crate::insight::criteria::changed::{
-    BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_IMPACT, KNOWN_DEVIATIONS, KNOWN_SHARE, LASTING_KNOWN,
-    LASTING_SHARE,
+    BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_IMPACT, CHANGED_SENSOR, KNOWN_DEVIATIONS, KNOWN_SHARE,
+    LASTING_KNOWN, LASTING_SHARE,
 };
 use crate::insight::criteria::material::{LEAST_SENSOR_IMPACT, MATERIAL_SIZE};
 use crate::insight::criteria::unseen::PAYS_DEVIATIONS;
@@ -107,7 +107,12 @@ fn chance(fitted: &FittedSelection, own: &[usize]) -> (f64, f64) {
 fn matters(fitted: &FittedSelection, suspect: &Suspect) -> bool {
     let x = &fitted.point().x;
     let Some(card) = suspect.card else { return sizes::share(fitted, suspect) > suspect.matters };
-    let least = if card.role == Role::ConstantError { CHANGED_BIAS.get() } else { MATERIAL_SIZE.get() };
+    let least = match (card.role, card.kind) {
+        (Role::ConstantError, _) => CHANGED_BIAS.get(),
+        (Role::ClockFast, _) => MATERIAL_SIZE.get(),
+        (_, EffectKind::Sensor) => CHANGED_SENSOR.get(),
+        _ => MATERIAL_SIZE.get(),
+    };
     let share =
         |(k, (_, p)): (&usize, (usize, &crate::model::effects::EffectParameter))| (x[*k] / p.typical[0]).powi(2);
     suspect.own.iter().zip(card.sizes()).map(share).sum::<f64>().sqrt() >= least

@@ -1,13 +1,14 @@
-//! How a flight controller answers an error of its roll and pitch rates, by what it sends to the motors. Those outputs
-//! are clean where a gyro is noisy: behind the motors' lag they also tell how the vehicle turns, so that only the scale
-//! of rate and acceleration is taken from the gyro.
+//! How a flight controller answers an error of its roll and pitch rates, by what it sends to the motors, and what that
+//! turns. Those outputs are clean where a gyro is noisy: behind the motors' lag they also tell how the vehicle turns, so
+//! that only the scale of rate and acceleration is taken from the gyro.
 //!
 //! The vehicle turns by `w' = a v` with `tau v' = u - v`, u the outputs' squares in the pattern of the axis; the loop
 //! answers by `du = gain a d(int v) + g1 d(a v) + g2 d(setpoint)` over [`ANSWER_S`].
 
 mod outputs;
+mod plant;
 
-use crate::base::stats::{mean, robust_sd};
+use crate::base::stats::{mean, median, robust_sd};
 use crate::flight::Log;
 use crate::flight::series::held;
 use crate::flight::spans::Span;
@@ -17,8 +18,10 @@ use crate::insight::estimate::jackknife::jackknife;
 use crate::insight::estimate::robust::huber;
 use nalgebra::{DMatrix, DVector};
 use outputs::Outputs;
+pub use plant::TurningPlant;
+use plant::plants;
 
-/// Roll and pitch: what turns a vehicle about yaw is led by the rotors' own inertia.
+/// Roll and pitch, whose gains are told.
 pub const AXES: usize = 2;
 /// Outputs are compared with those so long before, s: an integrator hardly moves meanwhile.
 const ANSWER_S: f64 = 0.016;
@@ -31,35 +34,42 @@ const REWEIGHTED: usize = 20;
 const HUBER: f64 = 3.0;
 const EXACT: f64 = 0.01;
 
-/// A rate loop about one axis.
+/// The gain of a rate loop about one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateGain {
-    /// Motor output, squared, as a share of its most, that an error of 1 rad/s turns with.
+    /// Motor output, squared, that an error of 1 rad/s turns with.
     pub gain: f64,
     /// Its standard deviation.
     pub sd: f64,
-    /// What outputs of 1 turn, rad/s2.
-    pub authority: f64,
-    /// The lag that they turn it with, s.
-    pub lag_s: f64,
     /// By how much the commands are late, s.
     pub delay_s: f64,
-    /// Share of the squares of the turns that the outputs explain, 0..1.
-    pub turned: f64,
     /// Share of the squares of the outputs that errors and turns explain, 0..1.
     pub answered: f64,
 }
 
-/// Of roll and pitch; none where the outputs of four motors, rates or commands are not known, or do not tell it.
-pub fn rate_gains(log: &Log, usable: &[Span]) -> Option<[RateGain; AXES]> {
+/// A rate loop and what it turns.
+#[derive(Clone, Debug)]
+pub struct RateLoop {
+    /// Of roll, pitch and yaw.
+    pub plants: [TurningPlant; 3],
+    /// Of roll and pitch; none where the outputs do not tell them.
+    pub gains: Option<[RateGain; AXES]>,
+    /// Middle of the voltage, V; NaN where the log has none.
+    pub volts: f64,
+}
+
+/// Of a flight; none where the outputs of four motors or the rates are not known.
+pub fn rate_loop(log: &Log, usable: &[Span]) -> Option<RateLoop> {
     let outputs = Outputs::new(&log.motors, usable)?;
-    let gains = [0, 1].map(|k| about(&outputs, log, k));
-    Some([gains[0]?, gains[1]?])
+    let plants = plants(&outputs, log)?;
+    let about = |k: usize| about(&outputs, log, &plants[k], k);
+    let gains = about(0).zip(about(1)).map(|(roll, pitch)| [roll, pitch]);
+    let volts: Vec<f64> = log.battery.column(0).into_iter().filter(|v| v.is_finite()).collect();
+    Some(RateLoop { plants, gains, volts: median(&volts) })
 }
 
 /// The law about axis `k`.
-fn about(outputs: &Outputs, log: &Log, k: usize) -> Option<RateGain> {
-    let plant = outputs.plant(log, k)?;
+fn about(outputs: &Outputs, log: &Log, plant: &TurningPlant, k: usize) -> Option<RateGain> {
     let [behind, sum] = outputs.lagged(plant.pattern, plant.lag_s);
     let (sent, rate): (Vec<f64>, Vec<f64>) = (log.setpoint.column(k), sum);
     let apart = outputs.apart(ANSWER_S);
@@ -71,7 +81,7 @@ fn about(outputs: &Outputs, log: &Log, k: usize) -> Option<RateGain> {
         let columns = vec![moved(&rate, plant.authority), moved(&behind, plant.authority), moved(&wanted, 1.0)];
         let stretch = at.iter().map(|&i| ((outputs.time[i] - outputs.time[0]) / STRETCH_S) as u32).collect();
         let law = law(columns, moved(&outputs.turning[plant.pattern], 1.0), stretch)?;
-        Some(RateGain { delay_s, authority: plant.authority.abs(), lag_s: plant.lag_s, turned: plant.turned, ..law })
+        Some(RateGain { delay_s, ..law })
     });
     laws.max_by(|a, b| a.answered.total_cmp(&b.answered))
 }
@@ -99,30 +109,39 @@ fn law(columns: Vec<Vec<f64>>, moved: Vec<f64>, stretch: Vec<u32>) -> Option<Rat
     let own: Vec<usize> = (0..n).collect();
     let (covariance, _) = jackknife(&grams, &own, n + 1, &vec![0.0; n], 1)?;
     let answered = 1.0 - grams.sum[(n + 1, n + 1)] / grams.sum[(n, n)];
-    let known = RateGain { gain: size[0].abs(), sd: covariance[(0, 0)].sqrt(), answered, ..RateGain::NONE };
+    let known = RateGain { gain: size[0].abs(), sd: covariance[(0, 0)].sqrt(), delay_s: 0.0, answered };
     (known.gain > 0.0 && answered.is_finite()).then_some(known)
 }
 
-impl RateGain {
-    const NONE: Self =
-        Self { gain: 0.0, sd: 0.0, authority: 0.0, lag_s: 0.0, delay_s: 0.0, turned: 0.0, answered: 0.0 };
+/// Several flights of one vehicle as one: the middle of what they say, as well as the worst of them says it. None where
+/// one of them says nothing.
+pub fn together(flights: &[Option<RateLoop>]) -> Option<RateLoop> {
+    let flights: Vec<&RateLoop> = flights.iter().map(Option::as_ref).collect::<Option<_>>()?;
+    let first = *flights.first()?;
+    let plant = |k: usize| {
+        let of = |f: fn(&TurningPlant) -> f64| flights.iter().map(|l| f(&l.plants[k])).collect::<Vec<f64>>();
+        let (authority, sd) = middle(&of(|p| p.authority.abs()), &of(|p| p.sd));
+        let (lag_s, turned) = (mean(&of(|p| p.lag_s)), least(&of(|p| p.turned)));
+        TurningPlant { authority, sd, lag_s, turned, ..first.plants[k] }
+    };
+    let gain = |k: usize| {
+        let all = flights.iter().map(|l| Some(l.gains?[k])).collect::<Option<Vec<RateGain>>>()?;
+        let of = |f: fn(&RateGain) -> f64| all.iter().map(f).collect::<Vec<f64>>();
+        let (gain, sd) = middle(&of(|g| g.gain), &of(|g| g.sd));
+        Some(RateGain { gain, sd, delay_s: mean(&of(|g| g.delay_s)), answered: least(&of(|g| g.answered)) })
+    };
+    let gains = gain(0).zip(gain(1)).map(|(roll, pitch)| [roll, pitch]);
+    let volts = mean(&flights.iter().map(|l| l.volts).collect::<Vec<f64>>());
+    Some(RateLoop { plants: [0, 1, 2].map(plant), gains, volts })
+}
 
-    /// Several flights of one vehicle as one: the middle of what they say, as well as the worst of them says it.
-    pub fn together(all: &[Self]) -> Option<Self> {
-        let of = |f: fn(&Self) -> f64| all.iter().map(f).collect::<Vec<f64>>();
-        let least = |x: Vec<f64>| x.into_iter().fold(f64::INFINITY, f64::min);
-        let gains = of(|g| g.gain);
-        let gain = mean(&gains);
-        let spread = gains.iter().map(|g| (g - gain).powi(2)).sum::<f64>().sqrt() / gains.len() as f64;
-        let own = of(|g| g.sd * g.sd).iter().sum::<f64>().sqrt() / gains.len() as f64;
-        (!all.is_empty()).then(|| Self {
-            gain,
-            sd: own.hypot(spread),
-            authority: mean(&of(|g| g.authority)),
-            lag_s: mean(&of(|g| g.lag_s)),
-            delay_s: mean(&of(|g| g.delay_s)),
-            turned: least(of(|g| g.turned)),
-            answered: least(of(|g| g.answered)),
-        })
-    }
+/// The mean of what flights say, and its standard deviation by their own and by their spread.
+fn middle(all: &[f64], sd: &[f64]) -> (f64, f64) {
+    let (middle, n) = (mean(all), all.len() as f64);
+    let root = |x: &mut dyn Iterator<Item = f64>| x.map(|x| x * x).sum::<f64>().sqrt() / n;
+    (middle, root(&mut all.iter().map(|x| x - middle)).hypot(root(&mut sd.iter().copied())))
+}
+
+fn least(x: &[f64]) -> f64 {
+    x.iter().copied().fold(f64::INFINITY, f64::min)
 }

@@ -1,0 +1,99 @@
+//! How what the motors are sent turns the vehicle about an axis.
+
+use super::STRETCH_S;
+use super::outputs::{Outputs, PATTERNS};
+use crate::flight::Log;
+use crate::flight::series::{interpolated, period};
+use crate::insight::estimate::gram::dot;
+
+/// Rates are compared with those so long before, s.
+const TURN_S: f64 = 0.04;
+/// Lags of motors, s, the first and how many times as long each is as the one before.
+const LAGS: (f64, f64, i32) = (0.008, 1.144, 16);
+
+/// How the vehicle turns about an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurningPlant {
+    /// Of [`PATTERNS`], the one that turns it.
+    pub pattern: usize,
+    /// Lag of the motors, s.
+    pub lag_s: f64,
+    /// Angular acceleration by a pattern's output of 1, rad/s2, with its sign, and its standard deviation.
+    pub authority: f64,
+    pub sd: f64,
+    /// Share of the squares of the turns that is explained, 0..1.
+    pub turned: f64,
+}
+
+/// About roll, pitch and yaw. What turns about yaw is led by the rotors' own inertia: beside the outputs their change
+/// counts, behind the lag of the other two axes.
+pub fn plants(outputs: &Outputs, log: &Log) -> Option<[TurningPlant; 3]> {
+    let [roll, pitch] = [0, 1].map(|k| Turns::new(outputs, log, k).lagged());
+    let (roll, pitch) = (roll?, pitch?);
+    let lag_s = (roll.lag_s * pitch.lag_s).sqrt();
+    let turns = Turns::new(outputs, log, 2);
+    let yaw = best((0..PATTERNS.len()).map(|pattern| turns.plant(pattern, lag_s, true)))?;
+    Some([roll, pitch, yaw])
+}
+
+fn best(plants: impl Iterator<Item = TurningPlant>) -> Option<TurningPlant> {
+    plants.filter(|p| p.turned.is_finite()).max_by(|a, b| a.turned.total_cmp(&b.turned))
+}
+
+/// Measured turns about an axis.
+struct Turns<'a> {
+    outputs: &'a Outputs,
+    /// Earlier samples of the pairs that are compared, and how far apart the two are.
+    at: Vec<usize>,
+    apart: usize,
+    /// rad/s.
+    measured: Vec<f64>,
+}
+
+impl<'a> Turns<'a> {
+    fn new(outputs: &'a Outputs, log: &Log, k: usize) -> Self {
+        let reach = 3.0 * period(&log.imu.time_s);
+        let rate = interpolated(&log.imu.time_s, &log.imu.column(k), &outputs.time, reach);
+        let apart = outputs.apart(TURN_S);
+        let at = outputs.pairs(apart, |i| outputs.usable[i] && rate[i].is_finite());
+        let mut turns = Self { outputs, at, apart, measured: Vec::new() };
+        turns.measured = turns.moved(&rate);
+        turns
+    }
+
+    fn moved(&self, x: &[f64]) -> Vec<f64> {
+        self.at.iter().map(|&i| x[i + self.apart] - x[i]).collect()
+    }
+
+    /// The pattern and the lag that explain it best.
+    fn lagged(&self) -> Option<TurningPlant> {
+        let lags = (0..LAGS.2).map(|i| LAGS.0 * LAGS.1.powi(i));
+        best(lags.flat_map(|lag_s| (0..PATTERNS.len()).map(move |pattern| self.plant(pattern, lag_s, false))))
+    }
+
+    /// By a pattern behind a lag, s, and by its change where that is `led`.
+    fn plant(&self, pattern: usize, lag_s: f64, led: bool) -> TurningPlant {
+        let [change, mut own] = self.outputs.lagged(pattern, lag_s).map(|x| self.moved(&x));
+        let mut left = self.measured.clone();
+        if led {
+            take_off(&mut own, &change);
+            take_off(&mut left, &change);
+        }
+        let square = dot(&own, &own).max(1e-300);
+        let authority = take_off(&mut left, &own);
+        let mut pull = std::collections::BTreeMap::new();
+        for ((x, e), i) in own.iter().zip(&left).zip(&self.at) {
+            *pull.entry((self.outputs.time[*i] / STRETCH_S) as i64).or_insert(0.0) += x * e;
+        }
+        let sd = pull.values().map(|p: &f64| p * p).sum::<f64>().sqrt() / square;
+        let turned = 1.0 - dot(&left, &left) / dot(&self.measured, &self.measured);
+        TurningPlant { pattern, lag_s, authority, sd, turned }
+    }
+}
+
+/// Takes off `x` what it has of `y`: so many times.
+fn take_off(x: &mut [f64], y: &[f64]) -> f64 {
+    let times = dot(x, y) / dot(y, y).max(1e-300);
+    x.iter_mut().zip(y).for_each(|(x, y)| *x -= times * y);
+    times
+}
