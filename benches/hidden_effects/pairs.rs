@@ -42,8 +42,8 @@ const ALSO: [(&str, &[&str]); 9] = [
     ("esc_slew", &["thrust_response"]),
     ("throttle_filter", &["thrust_response"]),
     ("stick_filter", &["rate_response"]),
-    ("low_authority", &["rate_response"]),
-    ("weak_yaw", &["yaw_response"]),
+    ("low_authority", &["rate_response", "turning_authority"]),
+    ("weak_yaw", &["yaw_response", "turning_authority"]),
     ("drag_linear", &["drag"]),
 ];
 

@@ -22,8 +22,8 @@ use super::accident;
 use super::contrast::Contrast;
 use super::finding::{Diagnosis, Status};
 use super::fitted::FittedSelection;
+use super::motor_loop::{MotorLoop, motor_loop, together};
 use super::problem::Problem;
-use super::rate_loop::{RateLoop, rate_loop, together};
 use super::select::Selection;
 use super::shown;
 use super::size::is_material;
@@ -40,7 +40,7 @@ use suspect::{FoundDifference, Suspect};
 pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Changes {
     let later: Vec<bool> = before.iter().map(|_| false).chain(after.iter().map(|_| true)).collect();
     let all: Vec<Quality> = before.into_iter().chain(after).collect();
-    let loops = all.par_iter().map(|q| rate_loop(&q.log, &q.usable)).collect::<Vec<_>>();
+    let loops = all.par_iter().map(|q| motor_loop(&q.log, &q.usable)).collect::<Vec<_>>();
     let (earlier, last) = loops.split_at(later.iter().filter(|later| !**later).count());
     let loops = together(earlier).zip(together(last)).map(|(before, after)| [before, after]);
     let contrasted = |logs| {
@@ -82,7 +82,7 @@ fn changes(
     problem: &Problem,
     suspects: &[Suspect],
     search: &DifferenceSearch,
-    loops: Option<&[RateLoop; 2]>,
+    loops: Option<&[MotorLoop; 2]>,
 ) -> Changes {
     let fitted = &FittedSelection::new(problem, &search.selection);
     let mut changes = judge::all(fitted, suspects, &search.found);

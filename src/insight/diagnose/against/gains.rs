@@ -8,7 +8,7 @@ use crate::insight::criteria::changed::{
     SAME_LOOP_DELAY_S,
 };
 use crate::insight::diagnose::finding::{Status, Value};
-use crate::insight::diagnose::rate_loop::{AXES, RateGain, RateLoop};
+use crate::insight::diagnose::motor_loop::{AXES, MotorLoop, RateGain};
 use std::collections::BTreeMap;
 
 const NAMES: [&str; AXES] = ["roll", "pitch"];
@@ -18,7 +18,7 @@ const RESPONSE: &str = "rate_response";
 
 /// What changed of the gains, in the place of the response of roll and pitch in `changes`. Yaw's stays: its gains are
 /// not looked at.
-pub fn replace_response(loops: &[RateLoop; 2], changes: &mut Vec<Change>) {
+pub fn replace_response(loops: &[MotorLoop; 2], changes: &mut Vec<Change>) {
     let Some(gains) = changed(loops) else { return };
     let response = changes.extract_if(.., |c| c.cause == RESPONSE);
     let impact = response.filter_map(|c| c.impact).last();
@@ -26,7 +26,7 @@ pub fn replace_response(loops: &[RateLoop; 2], changes: &mut Vec<Change>) {
 }
 
 /// Gains of roll and pitch that both moved one way, where nothing else of the loop did.
-fn changed(loops: &[RateLoop; 2]) -> Option<Change> {
+fn changed(loops: &[MotorLoop; 2]) -> Option<Change> {
     let [before, after] = [loops[0].gains?, loops[1].gains?];
     let pairs: [[RateGain; 2]; AXES] = [0, 1].map(|k| [before[k], after[k]]);
     let moved: Vec<f64> = pairs.iter().map(|[a, b]| (b.gain / a.gain).ln()).collect();
@@ -67,7 +67,7 @@ fn error(g: &RateGain) -> f64 {
 
 /// Whether both sets tell the gain, and have the same vehicle and the same delay about it: where another authority,
 /// other motors or another filter are at work the outputs are others with the same gains.
-fn told(loops: &[RateLoop; 2], gains: &[RateGain; 2], k: usize) -> bool {
+fn told(loops: &[MotorLoop; 2], gains: &[RateGain; 2], k: usize) -> bool {
     let plants = [loops[0].plants[k], loops[1].plants[k]];
     let same = |[x, y]: [f64; 2], within: f64| (x / y).ln().abs() < (1.0 + within).ln();
     plants.iter().all(|p| p.turned > GAIN_TURNED.get())
@@ -80,16 +80,16 @@ fn told(loops: &[RateLoop; 2], gains: &[RateGain; 2], k: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::insight::diagnose::rate_loop::TurningPlant;
+    use crate::insight::diagnose::motor_loop::TurningPlant;
 
     /// With these gains of roll and pitch.
-    fn set(gains: [f64; AXES]) -> RateLoop {
+    fn set(gains: [f64; AXES]) -> MotorLoop {
         let plant = TurningPlant { pattern: 0, lag_s: 0.03, authority: 400.0, sd: 4.0, turned: 0.98 };
         let gains = gains.map(|gain| RateGain { gain, sd: 0.003, delay_s: 0.0, answered: 0.99 });
-        RateLoop { plants: [plant; 3], gains: Some(gains), volts: 24.0 }
+        MotorLoop { plants: [plant; 3], gains: Some(gains), volts: 24.0 }
     }
 
-    fn after(change: impl Fn(&mut TurningPlant, &mut RateGain)) -> RateLoop {
+    fn after(change: impl Fn(&mut TurningPlant, &mut RateGain)) -> MotorLoop {
         let mut set = set([0.09, 0.08]);
         change(&mut set.plants[0], &mut set.gains.as_mut().expect("gains")[0]);
         set

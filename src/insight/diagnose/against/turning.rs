@@ -8,7 +8,7 @@ use crate::insight::criteria::changed::{
     YAW_TURNED,
 };
 use crate::insight::diagnose::finding::{Status, Value};
-use crate::insight::diagnose::rate_loop::{RateLoop, TurningPlant};
+use crate::insight::diagnose::motor_loop::{MotorLoop, TurningPlant};
 use crate::model::effects::{self, Card, EffectKind, RateResponse, ResidualChannel, Role};
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ const THRUST_RESPONSE: &str = "thrust_response";
 const RESPONSES: [&str; 2] = ["rate_response", "yaw_response"];
 
 /// Adds what the motors tell of the vehicle to `changes`; what follows from it is only suspected then.
-pub fn replace_what_follows(loops: &[RateLoop; 2], changes: &mut Vec<Change>) {
+pub fn replace_what_follows(loops: &[MotorLoop; 2], changes: &mut Vec<Change>) {
     if let Some(authority) = authority(loops, changes) {
         if authority.difference.len() > 1 {
             let limited = |id| effects::card(id).is_some_and(|card| card.response != RateResponse::FirstOrder);
@@ -46,7 +46,7 @@ fn follow(changes: &mut [Change], name: &str, follows: impl Fn(&Change) -> bool)
 }
 
 /// By how much the outputs turn it: about roll and pitch, or about yaw alone.
-fn authority(loops: &[RateLoop; 2], changes: &[Change]) -> Option<Change> {
+fn authority(loops: &[MotorLoop; 2], changes: &[Change]) -> Option<Change> {
     let voltage = 2.0 * (loops[1].volts / loops[0].volts).ln().abs();
     let least = (1.0 + CHANGED_AUTHORITY.get()).ln() + voltage;
     let moved = [0, 1, 2].map(|k| (loops[1].plants[k].authority / loops[0].plants[k].authority).ln());
@@ -82,7 +82,7 @@ fn authority(loops: &[RateLoop; 2], changes: &[Change]) -> Option<Change> {
 }
 
 /// By how much later the vehicle turns than its motors are told to, about roll and pitch.
-fn lag(loops: &[RateLoop; 2], changes: &[Change]) -> Option<Change> {
+fn lag(loops: &[MotorLoop; 2], changes: &[Change]) -> Option<Change> {
     let axes = [0, 1];
     let moved = axes.map(|k| (loops[1].plants[k].lag_s / loops[0].plants[k].lag_s).ln());
     let told = axes.iter().all(|&k| loops.iter().all(|l| l.plants[k].turned > GAIN_TURNED.get()));
@@ -111,7 +111,7 @@ fn lag(loops: &[RateLoop; 2], changes: &[Change]) -> Option<Change> {
             cause: THRUST_RESPONSE,
             name: "response of the thrust",
             members,
-            sentence: "the vehicle turns later, or sooner, after its motors are told to: motors, propellers, their controllers",
+            sentence: "it turns later, or sooner, after its motors are told to: motors, propellers, their controllers",
             impact: seen.and_then(|c| c.impact),
         },
     ))
@@ -128,7 +128,7 @@ struct Words {
 
 /// A change of what is read `of` each plant, with its standard deviation.
 fn change(
-    loops: &[RateLoop; 2],
+    loops: &[MotorLoop; 2],
     axes: &[usize],
     (number, unit): (&str, &str),
     of: impl Fn(&TurningPlant) -> (f64, f64),
@@ -166,13 +166,13 @@ fn change(
 mod tests {
     use super::*;
 
-    fn set(authority: [f64; 3], lag_s: [f64; 3], volts: f64) -> RateLoop {
+    fn set(authority: [f64; 3], lag_s: [f64; 3], volts: f64) -> MotorLoop {
         let plant =
             |k: usize| TurningPlant { pattern: k, lag_s: lag_s[k], authority: authority[k], sd: 2.0, turned: 0.98 };
-        RateLoop { plants: [0, 1, 2].map(plant), gains: None, volts }
+        MotorLoop { plants: [0, 1, 2].map(plant), gains: None, volts }
     }
 
-    fn told(before: RateLoop, after: RateLoop) -> Vec<Change> {
+    fn told(before: MotorLoop, after: MotorLoop) -> Vec<Change> {
         let mut changes = Vec::new();
         replace_what_follows(&[before, after], &mut changes);
         changes

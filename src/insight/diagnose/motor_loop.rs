@@ -1,6 +1,6 @@
-//! How a flight controller answers an error of its roll and pitch rates, by what it sends to the motors, and what that
-//! turns. Those outputs are clean where a gyro is noisy: behind the motors' lag they also tell how the vehicle turns, so
-//! that only the scale of rate and acceleration is taken from the gyro.
+//! How a flight controller answers an error of its roll and pitch rates, by what it sends to the motors, and how that
+//! turns the vehicle. Those outputs are clean where a gyro is noisy: behind the motors' lag they also tell how it turns,
+//! so that only the scale of rate and acceleration is taken from the gyro.
 //!
 //! The vehicle turns by `w' = a v` with `tau v' = u - v`, u the outputs' squares in the pattern of the axis; the loop
 //! answers by `du = gain a d(int v) + g1 d(a v) + g2 d(setpoint)` over [`ANSWER_S`].
@@ -49,7 +49,7 @@ pub struct RateGain {
 
 /// A rate loop and what it turns.
 #[derive(Clone, Debug)]
-pub struct RateLoop {
+pub struct MotorLoop {
     /// Of roll, pitch and yaw.
     pub plants: [TurningPlant; 3],
     /// Of roll and pitch; none where the outputs do not tell them.
@@ -59,13 +59,13 @@ pub struct RateLoop {
 }
 
 /// Of a flight; none where the outputs of four motors or the rates are not known.
-pub fn rate_loop(log: &Log, usable: &[Span]) -> Option<RateLoop> {
+pub fn motor_loop(log: &Log, usable: &[Span]) -> Option<MotorLoop> {
     let outputs = Outputs::new(&log.motors, usable)?;
     let plants = plants(&outputs, log)?;
     let about = |k: usize| about(&outputs, log, &plants[k], k);
     let gains = about(0).zip(about(1)).map(|(roll, pitch)| [roll, pitch]);
     let volts: Vec<f64> = log.battery.column(0).into_iter().filter(|v| v.is_finite()).collect();
-    Some(RateLoop { plants, gains, volts: median(&volts) })
+    Some(MotorLoop { plants, gains, volts: median(&volts) })
 }
 
 /// The law about axis `k`.
@@ -115,8 +115,8 @@ fn law(columns: Vec<Vec<f64>>, moved: Vec<f64>, stretch: Vec<u32>) -> Option<Rat
 
 /// Several flights of one vehicle as one: the middle of what they say, as well as the worst of them says it. None where
 /// one of them says nothing.
-pub fn together(flights: &[Option<RateLoop>]) -> Option<RateLoop> {
-    let flights: Vec<&RateLoop> = flights.iter().map(Option::as_ref).collect::<Option<_>>()?;
+pub fn together(flights: &[Option<MotorLoop>]) -> Option<MotorLoop> {
+    let flights: Vec<&MotorLoop> = flights.iter().map(Option::as_ref).collect::<Option<_>>()?;
     let first = *flights.first()?;
     let plant = |k: usize| {
         let of = |f: fn(&TurningPlant) -> f64| flights.iter().map(|l| f(&l.plants[k])).collect::<Vec<f64>>();
@@ -132,7 +132,7 @@ pub fn together(flights: &[Option<RateLoop>]) -> Option<RateLoop> {
     };
     let gains = gain(0).zip(gain(1)).map(|(roll, pitch)| [roll, pitch]);
     let volts = mean(&flights.iter().map(|l| l.volts).collect::<Vec<f64>>());
-    Some(RateLoop { plants: [0, 1, 2].map(plant), gains, volts })
+    Some(MotorLoop { plants: [0, 1, 2].map(plant), gains, volts })
 }
 
 /// The mean of what flights say, and its standard deviation by their own and by their spread.

@@ -28,10 +28,10 @@ pub struct TurningPlant {
 /// About roll, pitch and yaw. What turns about yaw is led by the rotors' own inertia: beside the outputs their change
 /// counts, behind the lag of the other two axes.
 pub fn plants(outputs: &Outputs, log: &Log) -> Option<[TurningPlant; 3]> {
-    let [roll, pitch] = [0, 1].map(|k| Turns::new(outputs, log, k).lagged());
+    let [roll, pitch] = [0, 1].map(|k| MeasuredTurns::new(outputs, log, k).lagged());
     let (roll, pitch) = (roll?, pitch?);
     let lag_s = (roll.lag_s * pitch.lag_s).sqrt();
-    let turns = Turns::new(outputs, log, 2);
+    let turns = MeasuredTurns::new(outputs, log, 2);
     let yaw = best((0..PATTERNS.len()).map(|pattern| turns.plant(pattern, lag_s, true)))?;
     Some([roll, pitch, yaw])
 }
@@ -41,7 +41,7 @@ fn best(plants: impl Iterator<Item = TurningPlant>) -> Option<TurningPlant> {
 }
 
 /// Measured turns about an axis.
-struct Turns<'a> {
+struct MeasuredTurns<'a> {
     outputs: &'a Outputs,
     /// Earlier samples of the pairs that are compared, and how far apart the two are.
     at: Vec<usize>,
@@ -50,7 +50,7 @@ struct Turns<'a> {
     measured: Vec<f64>,
 }
 
-impl<'a> Turns<'a> {
+impl<'a> MeasuredTurns<'a> {
     fn new(outputs: &'a Outputs, log: &Log, k: usize) -> Self {
         let reach = 3.0 * period(&log.imu.time_s);
         let rate = interpolated(&log.imu.time_s, &log.imu.column(k), &outputs.time, reach);
