@@ -36,6 +36,10 @@ COMMANDS = {
                        "--csv results/against-seed20.csv"),
     "against-seed21": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 21 --jobs 2 "
                        "--csv results/against-seed21.csv"),
+    "against-seed22": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 22 --jobs 2 "
+                       "--csv results/against-seed22.csv"),
+    "against-seed23": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 23 --jobs 2 "
+                       "--csv results/against-seed23.csv"),
     "against-seed16": ([], "0.5 h", f"{BENCH} --against --n 40 --seconds 60 --seed 16 --jobs 2 "
                        "--csv results/against-seed16.csv"),
     "measured": (["logs"], "5 min", "python3 tests/python/measured_flights.py target/release/racer {logs} "

@@ -4,8 +4,7 @@
 use super::change::Change;
 use crate::base::stats::NORMAL_95;
 use crate::insight::criteria::changed::{
-    AUTHORITY_ERROR, CHANGED_AUTHORITY, CHANGED_LAG, GAIN_TURNED, KNOWN_DEVIATIONS, LAG_ERROR, SAME_AUTHORITY,
-    YAW_TURNED,
+    AUTHORITY_ERROR, CHANGED_AUTHORITY, CHANGED_LAG, GAIN_TURNED, LAG_ERROR, SAME_AUTHORITY, YAW_TURNED,
 };
 use crate::insight::diagnose::finding::{Status, Value};
 use crate::insight::diagnose::motor_loop::{MotorLoop, TurningPlant};
@@ -87,21 +86,20 @@ fn lag(loops: &[MotorLoop; 2], changes: &[Change]) -> Option<Change> {
     let moved = axes.map(|k| (loops[1].plants[k].lag_s / loops[0].plants[k].lag_s).ln());
     let told = axes.iter().all(|&k| loops.iter().all(|l| l.plants[k].turned > GAIN_TURNED.get()));
     let one_way = moved.iter().all(|m| m.abs() > (1.0 + CHANGED_LAG.get()).ln() && m.signum() == moved[0].signum());
-    let late = effects::cards().find(|card| card.role == Role::GyroLate)?.id;
+    // Motors that are slower, and a gyro or an IMU that is later, look the same from here.
+    let late = |card: &&Card| [Role::GyroLate, Role::ImuLate].contains(&card.role);
+    let late: Vec<&str> = effects::cards().filter(late).map(|card| card.id).collect();
     let known = |c: &Change| {
         let timing = |card: &Card| card.kind == EffectKind::Timing && card.channels.contains(&ResidualChannel::Force);
         let of_thrust = |id| effects::card(id).is_some_and(timing);
         let named = c.status != Status::Suspected && c.members.iter().all(|id| *id != RESPONSES[0]);
-        named && (c.cause == THRUST_RESPONSE || c.cause == late || of_thrust(c.cause))
+        named && (c.cause == THRUST_RESPONSE || late.contains(&c.cause) || of_thrust(c.cause))
     };
     if !(told && one_way) || changes.iter().any(known) {
         return None;
     }
-    // The thrust itself tells motors from a gyro.
-    let seen = changes.iter().find(|c| c.cause == THRUST_RESPONSE && c.deviations > KNOWN_DEVIATIONS.get());
-    let slower = |c: &Change| c.difference.values().next().is_some_and(|v| v.value.signum() == moved[0].signum());
+    let seen = changes.iter().find(|c| c.cause == THRUST_RESPONSE);
     let of = |plant: &TurningPlant| (1e3 * plant.lag_s, 1e3 * LAG_ERROR.get() * plant.lag_s);
-    let members = if seen.is_some_and(slower) { vec![THRUST_RESPONSE] } else { vec![THRUST_RESPONSE, late] };
     Some(change(
         loops,
         &axes,
@@ -110,7 +108,7 @@ fn lag(loops: &[MotorLoop; 2], changes: &[Change]) -> Option<Change> {
         Words {
             cause: THRUST_RESPONSE,
             name: "response of the thrust",
-            members,
+            members: [&[THRUST_RESPONSE], &late[..]].concat(),
             sentence: "it turns later, or sooner, after its motors are told to: motors, propellers, their controllers",
             impact: seen.and_then(|c| c.impact),
         },
