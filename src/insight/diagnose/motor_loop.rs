@@ -1,6 +1,6 @@
 //! How a flight controller answers an error of its roll and pitch rates, by what it sends to the motors, and how that
-//! turns the vehicle. Those outputs are clean where a gyro is noisy: behind the motors' lag they also tell how it turns,
-//! so that only the scale of rate and acceleration is taken from the gyro.
+//! turns the vehicle. Those outputs are clean where a gyro is noisy: behind the motors' lag they also tell how it
+//! turns, so that only the scale of rate and acceleration is taken from the gyro.
 //!
 //! The vehicle turns by `w' = a v` with `tau v' = u - v`, u the outputs' squares in the pattern of the axis; the loop
 //! answers by `du = gain a d(int v) + g1 d(a v) + g2 d(setpoint)` over [`ANSWER_S`].
