@@ -45,6 +45,9 @@ pub struct Args {
     /// Instead of single logs: pairs of flights of one vehicle of the third truth, half without a change between them
     #[arg(long)]
     pub against: bool,
+    /// With `--against`: only what the motors tell, without the program; hundreds of pairs a minute
+    #[arg(long, requires = "against")]
+    pub by_motors: bool,
     /// Instead of single logs: flights of few manoeuvres, the plans that the program makes of those with tied causes,
     /// and what both flights show
     #[arg(long, conflicts_with = "against")]
@@ -106,7 +109,8 @@ impl Args {
         if self.plan {
             return format!("--plan --n {n} --seed {seed}{from}{only}");
         }
-        let only = if self.against { format!("{from} --against{only}") } else { from + &only };
+        let by = if self.by_motors { " --by-motors" } else { "" };
+        let only = if self.against { format!("{from} --against{by}{only}") } else { from + &only };
         format!("--n {n} --seed {seed} --tier {tier} --style {style} --seconds {seconds}{only}")
     }
 

@@ -9,6 +9,9 @@ use crate::truth::hidden::Setting;
 use crate::truth::other::{Airframe, causes, fly};
 use racer::base::stats::quantile;
 use racer::flight::Log;
+use racer::insight::diagnose::against::{Change, by_motors};
+use racer::insight::diagnose::motor_loop::{motor_loop, together};
+use racer::insight::quality::check;
 use racer::model::vehicle::Vehicle;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -115,7 +118,7 @@ pub fn case(number: usize, args: &Args) -> Pair {
     let logs: Vec<Log> = (0..2).map(|i| fly(&airframes[i], &hidden[i], &settings[i])).collect();
     let nominal = Vehicle { name: "base".into(), ..airframe.nominal().in_racer() };
     let start = Instant::now();
-    let answer = ask(args, &folder.path, &logs, &nominal);
+    let answer = if args.by_motors { Ok(by_motors(&logs)) } else { ask(args, &folder.path, &logs, &nominal) };
     let both = both.iter().map(|h| format!("{}={:.3}", h.id, h.size)).collect::<Vec<_>>().join(" ");
     let Said { names, members, hidden } = answer.as_ref().cloned().unwrap_or_default();
     let could_not_show = changed.as_ref().is_some_and(|c| c.right.iter().all(|name| hidden.contains(name)));
@@ -173,6 +176,23 @@ struct Said {
     names: Vec<(String, String)>,
     members: Vec<String>,
     hidden: Vec<String>,
+}
+
+/// What the motors alone tell.
+fn by_motors(logs: &[Log]) -> Said {
+    let set = |log: &Log| {
+        let quality = check(log);
+        together(&[motor_loop(&quality.log, &quality.usable)])
+    };
+    let mut changes = Vec::new();
+    if let (Some(before), Some(after)) = (set(&logs[0]), set(&logs[1])) {
+        by_motors::add(&[before, after], &mut changes);
+    }
+    changes.sort_by(|a, b| b.deviations.total_cmp(&a.deviations));
+    let status = |c: &Change| if c.members.len() > 1 { "named_set" } else { "named" };
+    let names = changes.iter().map(|c| (c.cause.to_string(), status(c).to_string())).collect();
+    let members = changes.first().map_or(Vec::new(), |c| c.members.iter().map(|m| m.to_string()).collect());
+    Said { names, members, hidden: Vec::new() }
 }
 
 fn ask(args: &Args, folder: &Path, logs: &[Log], base: &Vehicle) -> Result<Said, String> {

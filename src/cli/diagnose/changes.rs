@@ -72,10 +72,18 @@ pub fn text(c: &Changes) -> String {
     let (numbers, effects): (Vec<&WouldShow>, Vec<&WouldShow>) = c.would_show.iter().partition(|w| w.large.is_none());
     let numbers: Vec<String> = numbers.into_iter().map(smallest).collect();
     out.push(format!("a difference would have shown from: {}", numbers.join(", ")));
-    let hidden = effects.into_iter().filter(|w| w.large.is_some_and(|large| w.smallest > large)).map(|w| w.cause);
-    let hidden: Vec<&str> = hidden.collect();
+    let beyond = |size: fn(&WouldShow) -> f64| {
+        let hidden = effects.iter().filter(|w| w.large.is_some_and(|large| size(w) > large));
+        hidden.map(|w| w.cause).collect::<Vec<&str>>()
+    };
+    let hidden = beyond(|w| w.smallest);
     if !hidden.is_empty() {
         out.push(format!("not even a large difference would have shown of: {}", hidden.join(", ")));
+    }
+    let mut partly = beyond(|w| w.worst_axis);
+    partly.retain(|cause| !hidden.contains(cause));
+    if !partly.is_empty() {
+        out.push(format!("about some axis not even a large difference would have shown of: {}", partly.join(", ")));
     }
     out.join("\n\n")
 }

@@ -6,6 +6,7 @@
 //! ([`judge`]). What the model gets wrong of both sets alike is no difference.
 
 mod alike;
+pub mod by_motors;
 mod change;
 mod columns;
 mod flown;
@@ -95,8 +96,7 @@ fn changes(
         changes.push(motor);
     }
     if let Some(loops) = loops {
-        gains::replace_response(loops, &mut changes);
-        turning::replace_what_follows(loops, &mut changes);
+        by_motors::add(loops, &mut changes);
     }
     // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first, the
     // surest of it before all, told from all others or not.

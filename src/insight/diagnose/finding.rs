@@ -3,6 +3,7 @@
 use super::accident::LeftOut;
 use super::horizon::Horizon;
 use super::structure::Structure;
+use crate::base::stats::NORMAL_95;
 use crate::insight::criteria::shown::MENTIONED_SHARE;
 use crate::model::effects::{self, Card, Role};
 use serde::Serialize;
@@ -43,6 +44,14 @@ pub struct Value {
     pub high: f64,
     /// Of all three.
     pub unit: String,
+}
+
+impl Value {
+    /// Of an estimate and its standard deviation.
+    pub fn measured(value: f64, sd: f64, unit: &str) -> Self {
+        let half = NORMAL_95 * sd;
+        Self { value, low: value - half, high: value + half, unit: unit.into() }
+    }
 }
 
 /// Before and after, in `unit`.

@@ -27,8 +27,6 @@ pub const AXES: usize = 2;
 const ANSWER_S: f64 = 0.016;
 /// Delays of commands, s.
 const DELAYS_S: [f64; 6] = [0.0, 0.004, 0.008, 0.012, 0.02, 0.03];
-/// Length of the stretches that the spread is taken over, s.
-const STRETCH_S: f64 = 3.0;
 /// Steps of the robust fit, its bound in standard deviations, and the share of an output that is as good as exact.
 const REWEIGHTED: usize = 20;
 const HUBER: f64 = 3.0;
@@ -79,8 +77,7 @@ fn about(outputs: &Outputs, log: &Log, plant: &TurningPlant, k: usize) -> Option
         let at = outputs.pairs(apart, |i| outputs.usable[i] && outputs.free[i] && wanted[i].is_finite());
         let moved = |x: &[f64], scale: f64| at.iter().map(|&i| scale * (x[i + apart] - x[i])).collect::<Vec<_>>();
         let columns = vec![moved(&rate, plant.authority), moved(&behind, plant.authority), moved(&wanted, 1.0)];
-        let stretch = at.iter().map(|&i| ((outputs.time[i] - outputs.time[0]) / STRETCH_S) as u32).collect();
-        let law = law(columns, moved(&outputs.turning[plant.pattern], 1.0), stretch)?;
+        let law = law(columns, moved(&outputs.turning[plant.pattern], 1.0), outputs.stretches(&at))?;
         Some(RateGain { delay_s, ..law })
     });
     laws.max_by(|a, b| a.answered.total_cmp(&b.answered))

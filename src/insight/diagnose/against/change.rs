@@ -72,8 +72,10 @@ pub struct WouldShow {
     pub cause: &'static str,
     /// What people call it.
     pub name: &'static str,
-    /// Of its first parameter, or of any axis where they are several; a share of the numbers of the compact model.
+    /// Of its parameter that shows best; a share of the numbers of the compact model.
     pub smallest: f64,
+    /// Of the parameter that shows worst, of several axes: the same where it has one.
+    pub worst_axis: f64,
     /// A large size of an effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub large: Option<f64>,

@@ -1,17 +1,13 @@
 //! Other gains of the flight controller's rate loop, by what it sends to the motors. The rates themselves hardly show
 //! them: motors that are slow, or at an end of their range, turn the vehicle as they can.
 
+use super::by_motors::{Moved, Words, change, deviations, sure};
 use super::change::Change;
-use crate::base::stats::NORMAL_95;
 use crate::insight::criteria::changed::{
     CHANGED_GAIN, GAIN_ANSWERED, GAIN_DEVIATIONS, GAIN_ERROR, GAIN_TURNED, GAINS_DEVIATIONS, SAME_AUTHORITY, SAME_LAG,
     SAME_LOOP_DELAY_S,
 };
-use crate::insight::diagnose::finding::{Status, Value};
 use crate::insight::diagnose::motor_loop::{AXES, MotorLoop, RateGain};
-use std::collections::BTreeMap;
-
-const NAMES: [&str; AXES] = ["roll", "pitch"];
 
 /// The compact model's number that follows from these gains.
 const RESPONSE: &str = "rate_response";
@@ -29,35 +25,22 @@ pub fn replace_response(loops: &[MotorLoop; 2], changes: &mut Vec<Change>) {
 fn changed(loops: &[MotorLoop; 2]) -> Option<Change> {
     let [before, after] = [loops[0].gains?, loops[1].gains?];
     let pairs: [[RateGain; 2]; AXES] = [0, 1].map(|k| [before[k], after[k]]);
-    let moved: Vec<f64> = pairs.iter().map(|[a, b]| (b.gain / a.gain).ln()).collect();
-    let sd = |[a, b]: &[RateGain; 2]| (error(a) / a.gain).hypot(error(b) / b.gain);
-    let sure: Vec<f64> = moved.iter().zip(&pairs).map(|(moved, pair)| moved / sd(pair)).collect();
-    let one_way = moved.iter().all(|m| m.signum() == moved[0].signum() && m.abs() > (1.0 + CHANGED_GAIN.get()).ln());
-    let deviations = sure.iter().map(|s| s * s).sum::<f64>().sqrt();
-    let evident = sure.iter().all(|s| s.abs() > GAIN_DEVIATIONS.get()) && deviations > GAINS_DEVIATIONS.get();
+    let moved: [Moved; AXES] = [0, 1].map(|k| (k, pairs[k].map(|g| (g.gain, error(&g)))));
+    let by = pairs.map(|[a, b]| (b.gain / a.gain).ln());
+    let one_way = by.iter().all(|m| m.signum() == by[0].signum() && m.abs() > (1.0 + CHANGED_GAIN.get()).ln());
+    let sure = moved.iter().all(|m| sure(m).abs() > GAIN_DEVIATIONS.get());
+    let evident = sure && deviations(&moved) > GAINS_DEVIATIONS.get();
     if !(one_way && evident && (0..AXES).all(|k| told(loops, &pairs[k], k))) {
         return None;
     }
-    let value = |value: f64, sd: f64| {
-        let half = NORMAL_95 * sd;
-        Value { value, low: value - half, high: value + half, unit: "of the most of a motor, per rad/s".into() }
-    };
-    let of = |f: &dyn Fn(&[RateGain; 2]) -> Value| -> BTreeMap<String, Value> {
-        NAMES.iter().zip(&pairs).map(|(name, pair)| (format!("gain.{name}"), f(pair))).collect()
-    };
-    Some(Change {
+    let words = Words {
         cause: "rate_gains",
         name: "gains of the rate loop",
-        status: Status::Named,
         members: vec!["rate_gains"],
         sentence: "the flight controller answers an error of roll and pitch with more or less: its gains",
-        before: of(&|[a, _]| value(a.gain, error(a))),
-        after: of(&|[_, b]| value(b.gain, error(b))),
-        difference: of(&|[a, b]| value(b.gain - a.gain, error(a).hypot(error(b)))),
-        deviations,
-        impact: None,
-        why: None,
-    })
+        number: ("gain", "of a full output, per rad/s"),
+    };
+    Some(change(words, &moved))
 }
 
 /// Standard deviation of a gain, with what the spread over the time of a flight does not show.

@@ -1,7 +1,6 @@
 //! A cause as people read it, before, after and the difference of the two, with intervals by the delta method.
 
 use super::suspect::Suspect;
-use crate::base::stats::NORMAL_95;
 use crate::insight::diagnose::finding::Value;
 use crate::insight::diagnose::fitted::FittedSelection;
 use crate::insight::diagnose::numbers::{DISCHARGE, MAX_RATE, TAU, THRUST};
@@ -40,9 +39,8 @@ pub fn of(fitted: &FittedSelection, suspect: &Suspect) -> SizesOfSets {
         (g.transpose() * &fitted.covariance * &g)[(0, 0)].max(0.0).sqrt()
     };
     let value = |i: usize, value: f64, sd: f64| {
-        let half = NORMAL_95 * sd;
         let (name, _, unit) = &here[0][i];
-        (name.clone(), Value { value, low: value - half, high: value + half, unit: unit.clone() })
+        (name.clone(), Value::measured(value, sd, unit))
     };
     let set = |s: usize| (0..here[s].len()).map(|i| value(i, here[s][i].1, sd(&|g| g[s][i]))).collect();
     let apart = |i: usize| value(i, here[1][i].1 - here[0][i].1, sd(&|g| g[1][i] - g[0][i]));

@@ -1,17 +1,15 @@
 //! Another vehicle under the same motor outputs: they turn it by another share (its inertia, motors, propellers), or
 //! later (motors that are slower, or a gyro that is). What follows from it is no change of its own.
 
+use super::by_motors::{Moved, Words, change};
 use super::change::Change;
-use crate::base::stats::NORMAL_95;
 use crate::insight::criteria::changed::{
     AUTHORITY_ERROR, CHANGED_AUTHORITY, CHANGED_LAG, GAIN_TURNED, LAG_ERROR, SAME_AUTHORITY, YAW_TURNED,
 };
-use crate::insight::diagnose::finding::{Status, Value};
+use crate::insight::diagnose::finding::Status;
 use crate::insight::diagnose::motor_loop::{MotorLoop, TurningPlant};
 use crate::model::effects::{self, Card, EffectKind, RateResponse, ResidualChannel, Role};
-use std::collections::BTreeMap;
 
-const NAMES: [&str; 3] = ["roll", "pitch", "yaw"];
 const AUTHORITY: &str = "turning_authority";
 /// Numbers of the compact model.
 const THRUST: &str = "thrust";
@@ -64,20 +62,15 @@ fn authority(loops: &[MotorLoop; 2], changes: &[Change]) -> Option<Change> {
     if pushed.is_some_and(|share| (moved[axes[0]] - share.ln()).abs() < (1.0 + SAME_AUTHORITY.get()).ln()) {
         return None;
     }
-    let of = |plant: &TurningPlant| (plant.authority, plant.sd.hypot(AUTHORITY_ERROR.get() * plant.authority));
-    Some(change(
-        loops,
-        axes,
-        ("authority", "rad/s2 by a full output"),
-        of,
-        Words {
-            cause: AUTHORITY,
-            name: "turning authority",
-            members: vec![AUTHORITY],
-            sentence: "the same motor outputs turn it by another share: its inertia, its motors or its propellers",
-            impact: None,
-        },
-    ))
+    let of = |plant: TurningPlant| (plant.authority, plant.sd.hypot(AUTHORITY_ERROR.get() * plant.authority));
+    let words = Words {
+        cause: AUTHORITY,
+        name: "turning authority",
+        members: vec![AUTHORITY],
+        sentence: "the same motor outputs turn it by another share: its inertia, its motors or its propellers",
+        number: ("authority", "rad/s2 by a full output"),
+    };
+    Some(change(words, &moves(loops, axes, of)))
 }
 
 /// By how much later the vehicle turns than its motors are told to, about roll and pitch.
@@ -98,66 +91,21 @@ fn lag(loops: &[MotorLoop; 2], changes: &[Change]) -> Option<Change> {
     if !(told && one_way) || changes.iter().any(known) {
         return None;
     }
-    let seen = changes.iter().find(|c| c.cause == THRUST_RESPONSE);
-    let of = |plant: &TurningPlant| (1e3 * plant.lag_s, 1e3 * LAG_ERROR.get() * plant.lag_s);
-    Some(change(
-        loops,
-        &axes,
-        ("lag", "ms"),
-        of,
-        Words {
-            cause: THRUST_RESPONSE,
-            name: "response of the thrust",
-            members: [&[THRUST_RESPONSE], &late[..]].concat(),
-            sentence: "it turns later, or sooner, after its motors are told to: motors, propellers, their controllers",
-            impact: seen.and_then(|c| c.impact),
-        },
-    ))
+    let of = |plant: TurningPlant| (1e3 * plant.lag_s, 1e3 * LAG_ERROR.get() * plant.lag_s);
+    let words = Words {
+        cause: THRUST_RESPONSE,
+        name: "response of the thrust",
+        members: [&[THRUST_RESPONSE], &late[..]].concat(),
+        sentence: "it turns later, or sooner, after its motors are told to: motors, propellers, their controllers",
+        number: ("lag", "ms"),
+    };
+    let impact = changes.iter().find(|c| c.cause == THRUST_RESPONSE).and_then(|c| c.impact);
+    Some(Change { impact, ..change(words, &moves(loops, &axes, of)) })
 }
 
-/// What a change is called.
-struct Words {
-    cause: &'static str,
-    name: &'static str,
-    members: Vec<&'static str>,
-    sentence: &'static str,
-    impact: Option<f64>,
-}
-
-/// A change of what is read `of` each plant, with its standard deviation.
-fn change(
-    loops: &[MotorLoop; 2],
-    axes: &[usize],
-    (number, unit): (&str, &str),
-    of: impl Fn(&TurningPlant) -> (f64, f64),
-    words: Words,
-) -> Change {
-    let value = |value: f64, sd: f64| {
-        let half = NORMAL_95 * sd;
-        Value { value, low: value - half, high: value + half, unit: unit.into() }
-    };
-    let sets = |k: usize| [0, 1].map(|s| of(&loops[s].plants[k]));
-    let all = |f: &dyn Fn([(f64, f64); 2]) -> Value| -> BTreeMap<String, Value> {
-        axes.iter().map(|&k| (format!("{number}.{}", NAMES[k]), f(sets(k)))).collect()
-    };
-    let sure = |k: &usize| {
-        let [(a, sa), (b, sb)] = sets(*k);
-        (b / a).ln() / (sa / a).hypot(sb / b)
-    };
-    let Words { cause, name, members, sentence, impact } = words;
-    Change {
-        cause,
-        name,
-        status: if members.len() > 1 { Status::NamedSet } else { Status::Named },
-        members,
-        sentence,
-        before: all(&|[(a, sd), _]| value(a, sd)),
-        after: all(&|[_, (b, sd)]| value(b, sd)),
-        difference: all(&|[(a, sa), (b, sb)]| value(b - a, sa.hypot(sb))),
-        deviations: axes.iter().map(sure).map(|s| s * s).sum::<f64>().sqrt(),
-        impact,
-        why: None,
-    }
+/// What is read `of` the plant of each axis.
+fn moves(loops: &[MotorLoop; 2], axes: &[usize], of: impl Fn(TurningPlant) -> (f64, f64)) -> Vec<Moved> {
+    axes.iter().map(|&k| (k, [0, 1].map(|set: usize| of(loops[set].plants[k])))).collect()
 }
 
 #[cfg(test)]

@@ -7,8 +7,8 @@ use crate::insight::criteria::flown::SEEN_DEVIATIONS;
 use crate::insight::diagnose::problem::Problem;
 use std::collections::BTreeMap;
 
-/// Of each suspect, along whichever axis: a number is seen where it is seen best, an effect of several where the worst
-/// of them is. A gyro's scale about an axis that hardly turned is not seen.
+/// Of each suspect, each number where it is seen best. An effect of several, such as a gyro's scales, may be plain about
+/// one axis and hidden about another that hardly turned.
 pub fn all(problem: &Problem, tested: &[Tested], suspects: &[Suspect]) -> Vec<WouldShow> {
     let mut sizes: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for t in tested {
@@ -28,11 +28,11 @@ pub fn all(problem: &Problem, tested: &[Tested], suspects: &[Suspect]) -> Vec<Wo
         }
     }
     let one = |(i, suspect): (usize, &Suspect)| {
-        let of = sizes.range((i, 0)..(i + 1, 0)).map(|(_, size)| *size);
-        let smallest = of.max_by(f64::total_cmp)?;
+        let of = || sizes.range((i, 0)..(i + 1, 0)).map(|(_, size)| *size);
+        let (smallest, worst_axis) = (of().min_by(f64::total_cmp)?, of().max_by(f64::total_cmp)?);
         let unit = suspect.own.first().map_or("1", |&k| problem.model.numbers[k].unit);
         let large = suspect.card.map(|card| card.parameters[0].typical[1]);
-        Some(WouldShow { cause: suspect.id, name: suspect.name, smallest, large, unit })
+        Some(WouldShow { cause: suspect.id, name: suspect.name, smallest, worst_axis, large, unit })
     };
     suspects.iter().enumerate().filter_map(one).collect()
 }

@@ -11,6 +11,8 @@ use crate::insight::prepare::rotors::columns;
 pub const PATTERNS: [[f64; FOUR]; 3] = [[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0], [1.0, -1.0, -1.0, 1.0]];
 /// Outputs are thinned to about this rate, Hz.
 const ENOUGH_HZ: f64 = 250.0;
+/// Length of the stretches that a spread is taken over, s.
+const STRETCH_S: f64 = 3.0;
 /// Share of the largest turn that was asked for beyond which it may have been limited.
 const LIMITED: f64 = 0.97;
 
@@ -72,6 +74,11 @@ impl Outputs {
         let most = 2.0 * apart as f64 * self.step;
         let near = |i: &usize| self.time[i + apart] - self.time[*i] < most;
         (0..self.time.len().saturating_sub(apart)).filter(|&i| fit(i) && fit(i + apart)).filter(near).collect()
+    }
+
+    /// The stretch of time that each of these samples is in.
+    pub fn stretches(&self, at: &[usize]) -> Vec<u32> {
+        at.iter().map(|&i| ((self.time[i] - self.time[0]) / STRETCH_S) as u32).collect()
     }
 
     /// How many samples are so long.

@@ -1,10 +1,10 @@
 //! How what the motors are sent turns the vehicle about an axis.
 
-use super::STRETCH_S;
 use super::outputs::{Outputs, PATTERNS};
 use crate::flight::Log;
 use crate::flight::series::{interpolated, period};
-use crate::insight::estimate::gram::dot;
+use crate::insight::estimate::gram::{Grams, dot};
+use crate::insight::estimate::jackknife::jackknife;
 
 /// Rates are compared with those so long before, s.
 const TURN_S: f64 = 0.04;
@@ -28,16 +28,11 @@ pub struct TurningPlant {
 /// About roll, pitch and yaw. What turns about yaw is led by the rotors' own inertia: beside the outputs their change
 /// counts, behind the lag of the other two axes.
 pub fn plants(outputs: &Outputs, log: &Log) -> Option<[TurningPlant; 3]> {
-    let [roll, pitch] = [0, 1].map(|k| MeasuredTurns::new(outputs, log, k).lagged());
-    let (roll, pitch) = (roll?, pitch?);
-    let lag_s = (roll.lag_s * pitch.lag_s).sqrt();
-    let turns = MeasuredTurns::new(outputs, log, 2);
-    let yaw = best((0..PATTERNS.len()).map(|pattern| turns.plant(pattern, lag_s, true)))?;
+    let [roll, pitch, yaw] = [0, 1, 2].map(|k| MeasuredTurns::new(outputs, log, k));
+    let lags: Vec<f64> = (0..LAGS.2).map(|i| LAGS.0 * LAGS.1.powi(i)).collect();
+    let (roll, pitch) = (roll.best(&lags, false)?, pitch.best(&lags, false)?);
+    let yaw = yaw.best(&[(roll.lag_s * pitch.lag_s).sqrt()], true)?;
     Some([roll, pitch, yaw])
-}
-
-fn best(plants: impl Iterator<Item = TurningPlant>) -> Option<TurningPlant> {
-    plants.filter(|p| p.turned.is_finite()).max_by(|a, b| a.turned.total_cmp(&b.turned))
 }
 
 /// Measured turns about an axis.
@@ -65,29 +60,42 @@ impl<'a> MeasuredTurns<'a> {
         self.at.iter().map(|&i| x[i + self.apart] - x[i]).collect()
     }
 
-    /// The pattern and the lag that explain it best.
-    fn lagged(&self) -> Option<TurningPlant> {
-        let lags = (0..LAGS.2).map(|i| LAGS.0 * LAGS.1.powi(i));
-        best(lags.flat_map(|lag_s| (0..PATTERNS.len()).map(move |pattern| self.plant(pattern, lag_s, false))))
+    /// The pattern and the lag, of these, that explain it best; beside the change of the outputs where that leads.
+    fn best(&self, lags_s: &[f64], led: bool) -> Option<TurningPlant> {
+        let patterns = |&lag_s: &f64| (0..PATTERNS.len()).map(move |pattern| self.plant(pattern, lag_s, led));
+        let told = lags_s.iter().flat_map(patterns).filter(|p| p.turned.is_finite());
+        let plant = told.max_by(|a, b| a.turned.total_cmp(&b.turned))?;
+        Some(TurningPlant { sd: self.sd(&plant, led)?, ..plant })
     }
 
-    /// By a pattern behind a lag, s, and by its change where that is `led`.
+    /// Without the spread of its authority.
     fn plant(&self, pattern: usize, lag_s: f64, led: bool) -> TurningPlant {
+        let [own, mut left] = self.own(pattern, lag_s, led);
+        let authority = take_off(&mut left, &own);
+        let turned = 1.0 - dot(&left, &left) / dot(&self.measured, &self.measured);
+        TurningPlant { pattern, lag_s, authority, sd: f64::NAN, turned }
+    }
+
+    /// Standard deviation of its authority, by the stretches of time.
+    fn sd(&self, plant: &TurningPlant, led: bool) -> Option<f64> {
+        let [own, mut left] = self.own(plant.pattern, plant.lag_s, led);
+        take_off(&mut left, &own);
+        let stretch = self.outputs.stretches(&self.at);
+        let blocks = *stretch.last()? as usize + 1;
+        let grams = Grams::new(&[&vec![own], &vec![left]], &[stretch], blocks);
+        Some(jackknife(&grams, &[0], 1, &[0.0], 1)?.0[(0, 0)].sqrt())
+    }
+
+    /// What a pattern behind a lag, s, turns by, and the turns; both without what they have of its change where it
+    /// leads.
+    fn own(&self, pattern: usize, lag_s: f64, led: bool) -> [Vec<f64>; 2] {
         let [change, mut own] = self.outputs.lagged(pattern, lag_s).map(|x| self.moved(&x));
-        let mut left = self.measured.clone();
+        let mut turns = self.measured.clone();
         if led {
             take_off(&mut own, &change);
-            take_off(&mut left, &change);
+            take_off(&mut turns, &change);
         }
-        let square = dot(&own, &own).max(1e-300);
-        let authority = take_off(&mut left, &own);
-        let mut pull = std::collections::BTreeMap::new();
-        for ((x, e), i) in own.iter().zip(&left).zip(&self.at) {
-            *pull.entry((self.outputs.time[*i] / STRETCH_S) as i64).or_insert(0.0) += x * e;
-        }
-        let sd = pull.values().map(|p: &f64| p * p).sum::<f64>().sqrt() / square;
-        let turned = 1.0 - dot(&left, &left) / dot(&self.measured, &self.measured);
-        TurningPlant { pattern, lag_s, authority, sd, turned }
+        [own, turns]
     }
 }
 

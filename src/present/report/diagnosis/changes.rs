@@ -18,10 +18,11 @@ pub fn all(c: &Changes) -> Markup {
         details {
             summary { "Which differences would have shown" }
             table {
-                tr { th { "" } th { "seen from" } th class="text" { "" } }
+                tr { th { "" } th { "seen from" } th { "on its worst axis" } th class="text" { "" } }
                 @for w in &c.would_show {
                     tr {
                         td { code { (w.cause) } } td { (digits(w.smallest, w.smallest, 2)) }
+                        td { (digits(w.worst_axis, w.worst_axis, 2)) }
                         td class="text" { (unit(w.unit)) }
                     }
                 }
