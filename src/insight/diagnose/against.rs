@@ -10,13 +10,11 @@ pub mod by_motors;
 mod change;
 mod columns;
 mod flown;
-mod gains;
 mod judge;
 mod motor;
 mod search;
 mod sizes;
 mod suspect;
-mod turning;
 mod would_show;
 
 use super::accident;

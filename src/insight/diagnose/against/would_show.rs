@@ -7,8 +7,8 @@ use crate::insight::criteria::flown::SEEN_DEVIATIONS;
 use crate::insight::diagnose::problem::Problem;
 use std::collections::BTreeMap;
 
-/// Of each suspect, each number where it is seen best. An effect of several, such as a gyro's scales, may be plain about
-/// one axis and hidden about another that hardly turned.
+/// Of each suspect, each number where it is seen best. An effect of several, such as a gyro's scales, may be plain
+/// about one axis and hidden about another that hardly turned.
 pub fn all(problem: &Problem, tested: &[Tested], suspects: &[Suspect]) -> Vec<WouldShow> {
     let mut sizes: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for t in tested {

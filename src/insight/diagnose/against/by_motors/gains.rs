@@ -1,12 +1,12 @@
 //! Other gains of the flight controller's rate loop, by what it sends to the motors. The rates themselves hardly show
 //! them: motors that are slow, or at an end of their range, turn the vehicle as they can.
 
-use super::by_motors::{Moved, Words, change, deviations, sure};
-use super::change::Change;
+use super::moved::{Moved, Words, change, deviations, sure};
 use crate::insight::criteria::changed::{
     CHANGED_GAIN, GAIN_ANSWERED, GAIN_DEVIATIONS, GAIN_ERROR, GAIN_TURNED, GAINS_DEVIATIONS, SAME_AUTHORITY, SAME_LAG,
     SAME_LOOP_DELAY_S,
 };
+use crate::insight::diagnose::against::change::Change;
 use crate::insight::diagnose::motor_loop::{AXES, MotorLoop, RateGain};
 
 /// The compact model's number that follows from these gains.

@@ -1,11 +1,11 @@
 //! Another vehicle under the same motor outputs: they turn it by another share (its inertia, motors, propellers), or
 //! later (motors that are slower, or a gyro that is). What follows from it is no change of its own.
 
-use super::by_motors::{Moved, Words, change};
-use super::change::Change;
+use super::moved::{Moved, Words, change};
 use crate::insight::criteria::changed::{
     AUTHORITY_ERROR, CHANGED_AUTHORITY, CHANGED_LAG, GAIN_TURNED, LAG_ERROR, SAME_AUTHORITY, YAW_TURNED,
 };
+use crate::insight::diagnose::against::change::Change;
 use crate::insight::diagnose::finding::Status;
 use crate::insight::diagnose::motor_loop::{MotorLoop, TurningPlant};
 use crate::model::effects::{self, Card, EffectKind, RateResponse, ResidualChannel, Role};
