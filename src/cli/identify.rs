@@ -8,9 +8,9 @@ use crate::flight::Options;
 use crate::insight::identify::document::{CheckedLog, IdentificationDocument};
 use crate::insight::identify::estimate::Estimated;
 use crate::insight::identify::result::Identification;
-use crate::insight::identify::{AXES, FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ, identify, refuse};
-use crate::model::vehicle::Vehicle;
+use crate::insight::identify::{FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ, identify, refuse};
 use crate::model::vehicle::identified::ThrustSource;
+use crate::model::vehicle::{AXES, Vehicle};
 use crate::present::report;
 use std::path::PathBuf;
 

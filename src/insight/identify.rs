@@ -71,8 +71,6 @@ impl Check for IdentifyOptions {
     }
 }
 
-pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
-
 /// Identifies one vehicle from its flights.
 pub fn identify(logs: Vec<Quality>, options: &IdentifyOptions, watch: Watch) -> Identification {
     let data = Data::new(logs);

@@ -14,6 +14,9 @@ use serde::{Deserialize, Serialize};
 /// How far the thrust may fall as the command grows, as a share of full thrust.
 const THRUST_DIP: f64 = 0.01;
 
+/// What turns about the body axes x, y and z are called.
+pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
+
 const LIBRARY: Library = Library {
     kind: "vehicle",
     folder: "configs/vehicles",

@@ -9,6 +9,7 @@ pub mod wire;
 
 use super::sticks::Sticks;
 use crate::flight::instruments::Actual;
+use crate::model::vehicle::AXES;
 use std::fmt::Write;
 
 /// Where states and sticks go, and where motors arrive.
@@ -93,7 +94,7 @@ set blackbox_mode = NORMAL
 set blackbox_sample_rate = 1/2
 ",
     );
-    for (axis, rate) in ["roll", "pitch", "yaw"].into_iter().zip(wanted) {
+    for (axis, rate) in AXES.into_iter().zip(wanted) {
         let tens = tens(rate);
         let _ = write!(out, "set {axis}_rc_rate = {tens}\nset {axis}_srate = {tens}\nset {axis}_expo = 0\n");
     }

@@ -9,7 +9,7 @@ use crate::insight::criteria::believed::{
 use crate::insight::estimate::range::{DRAG_1_M, RATE_GAIN, TIME_CONSTANT_S};
 use crate::model::dynamics::drag;
 use crate::model::effects::{self, COUNT, Card, CompactNumber, LOG_COUNT, Quantities, Quantity};
-use crate::model::vehicle::Vehicle;
+use crate::model::vehicle::{AXES, Vehicle};
 use std::ops::Range;
 
 /// Order of the numbers: time constants (s), maximum rates (rad/s), c0..c5 (m/s2), drag per axis (1/m), discharge
@@ -110,13 +110,13 @@ impl Numbers {
     /// How rates and thrust follow their commands.
     fn response(&mut self, vehicle: &Vehicle) {
         let tau = vehicle.time_constants();
-        for (k, axis) in ["roll", "pitch", "yaw", "thrust"].iter().enumerate() {
+        for (k, axis) in AXES.iter().chain(&["thrust"]).enumerate() {
             let extent = Extent { bounds: TIME_CONSTANT_S, step: 2e-4, trust: TRUST_TIME_CONSTANT.get() * tau[k] };
             let writes = if k < 3 { Quantity::RateCommand } else { Quantity::ThrustCommand };
             self.add(format!("time_constant_s.{axis}"), "s", tau[k], extent, &[writes]);
         }
         let rates = vehicle.max_rates_rad_s();
-        for (k, axis) in ["roll", "pitch", "yaw"].iter().enumerate() {
+        for (k, axis) in AXES.iter().enumerate() {
             let bounds = RATE_GAIN.map(|gain| gain * rates[k]);
             let extent = Extent { bounds, step: 1e-3 * rates[k], trust: TRUST_RATE.get() * rates[k] };
             self.add(format!("max_rate_deg_s.{axis}"), "rad/s", rates[k], extent, &[Quantity::RateCommand]);
@@ -144,7 +144,7 @@ impl Numbers {
     /// What bends response, thrust, a velocity's lag and the drag: nothing, in the base.
     fn forms(&mut self, vehicle: &Vehicle) {
         for i in 0..forms::RESPONSE {
-            let name = format!("response.{}.{}", ["roll", "pitch", "yaw"][i / TAPS_S.len()], i % TAPS_S.len());
+            let name = format!("response.{}.{}", AXES[i / TAPS_S.len()], i % TAPS_S.len());
             let extent = Extent { bounds: [-0.1, 0.1], step: 0.1 * TAP_S, trust: 10.0 * TAP_S };
             self.add(name, "s", 0.0, extent, &[Quantity::Gyro]);
         }

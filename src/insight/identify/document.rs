@@ -1,11 +1,10 @@
 //! An identification as JSON.
 
-use super::AXES;
 use super::estimate::Estimated;
 use super::result::{BatteryEstimate, DragEstimate, Identification, Response, ThrustEstimate};
 use crate::insight::quality::{LogFinding, StreamSummary};
 use crate::model::effects::of_controller;
-use crate::model::vehicle::Vehicle;
+use crate::model::vehicle::{AXES, Vehicle};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -9,10 +9,11 @@ use super::fits::Fits;
 use super::judge::Accepted;
 use super::rates::Compared;
 use super::result::{ComparedChannel, Identification, Response};
-use super::{AXES, IdentifyOptions, battery};
+use super::{IdentifyOptions, battery};
 use crate::insight::predict::{PredictedChannel, Prediction};
 use crate::insight::prepare::data::Data;
 use crate::model::effects;
+use crate::model::vehicle::AXES;
 
 /// Everything but the vehicle's numbers themselves.
 pub fn fill(

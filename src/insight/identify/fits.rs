@@ -6,14 +6,14 @@ use super::rate_loop::{self, RateLoop, RateLoopForm};
 use super::rates::{LookedFor, RateAxis};
 use super::solve::Solution;
 use super::thrust::{self, ThrustFit};
-use super::{AXES, IdentifyOptions, battery, bias, room};
+use super::{IdentifyOptions, battery, bias, room};
 use crate::base::stats::NORMAL_95;
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::dynamics::drag::{ellipsoid, semi_axes};
 use crate::model::effects::{self, ControllerPart};
 use crate::model::vehicle::extension::Extension;
 use crate::model::vehicle::identified::SensorOffsets;
-use crate::model::vehicle::{MaxRates, TimeConstants, Vehicle};
+use crate::model::vehicle::{AXES, MaxRates, TimeConstants, Vehicle};
 use rayon::prelude::*;
 
 const TOO_SHORT: &str = "too few stretches of flight for a fit";

@@ -1,13 +1,13 @@
 //! Which fitted numbers a vehicle takes: those that predict flight they have not seen, that lie within the search, and
 //! that the flight tells at all. The others are left to the base vehicle, with the reason.
 
-use super::AXES;
 use super::estimate::Estimated;
 use super::fits::{Fits, Kept};
 use super::force_terms::{DRAG_AT, TAU};
 use crate::base::stats::Score;
 use crate::insight::criteria::identified::UNEXPLAINED_MOST;
 use crate::insight::predict::{PredictedChannel, Prediction};
+use crate::model::vehicle::AXES;
 use std::collections::BTreeMap;
 
 /// What is kept, and why the rest is not, by the key of a vehicle file.

@@ -9,6 +9,7 @@ use crate::base::stats::Score;
 use crate::insight::criteria::shown::{REMARKED_DELAY_S, REMARKED_ERROR, REMARKED_R2};
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::model::effects::{ControllerPart, YAW_SLEW_SHARE, of_controller};
+use crate::model::vehicle::AXES;
 use rayon::prelude::*;
 
 /// The axes that share what they have; yaw comes from reaction torque.
@@ -44,7 +45,7 @@ pub struct RateLoop {
 /// The form that predicts: each part has to be told, and to lower the error on the validation part.
 pub fn form(data: &Data, cutoff_hz: f64) -> RateLoopForm {
     let mut form = RateLoopForm::default();
-    let told = |axis: usize| data.why_not(&format!("{} response", super::AXES[axis])).is_none();
+    let told = |axis: usize| data.why_not(&format!("{} response", AXES[axis])).is_none();
     if !(0..3).all(told) {
         return form;
     }

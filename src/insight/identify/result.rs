@@ -3,13 +3,13 @@
 use super::estimate::Estimated;
 use super::fits::Kept;
 use super::rates::Compared;
-use super::{AXES, IdentifyOptions, fastest};
+use super::{IdentifyOptions, fastest};
 use crate::base::stats::Score;
 use crate::flight::spans::Span;
 use crate::insight::prepare::data::Data;
 use crate::model::effects::ControllerPart;
 use crate::model::vehicle::identified::{Origin, ThrustSource};
-use crate::model::vehicle::{Identified, LogSpan, Vehicle};
+use crate::model::vehicle::{AXES, Identified, LogSpan, Vehicle};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

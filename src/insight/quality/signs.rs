@@ -12,8 +12,8 @@ use crate::insight::criteria::consistent::{
 };
 use crate::model::attitude::body_axes;
 use crate::model::constants::GRAVITY_M_S2;
+use crate::model::vehicle::AXES;
 
-const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 /// Delays at which rates are compared with their setpoints, s.
 const DELAYS_S: [f64; 4] = [0.0, 0.02, 0.05, 0.1];
 

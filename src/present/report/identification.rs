@@ -2,10 +2,10 @@
 
 use super::signals;
 use crate::base::error::Result;
-use crate::insight::identify::AXES;
 use crate::insight::identify::document::CheckedLog;
 use crate::insight::identify::estimate::Estimated;
 use crate::insight::identify::result::Identification;
+use crate::model::vehicle::AXES;
 use crate::present::report::page::{self, number};
 use maud::{Markup, PreEscaped, html};
 

@@ -2,13 +2,14 @@
 
 use super::{judged, response};
 use crate::insight::criteria::shown::{REMARKED_DELAY_S, REMARKED_ERROR, REMARKED_R2};
+use crate::insight::identify::IdentifyOptions;
 use crate::insight::identify::estimate::Estimated;
 use crate::insight::identify::fits::Fits;
 use crate::insight::identify::judge::Accepted;
 use crate::insight::identify::rates::{BesideLag, DELAY, LookedFor, RateAxis};
 use crate::insight::identify::result::{Identification, Response};
-use crate::insight::identify::{AXES, IdentifyOptions};
 use crate::insight::prepare::data::{Data, DataPart};
+use crate::model::vehicle::AXES;
 
 /// What was found of an axis.
 pub fn rate(

@@ -2,7 +2,7 @@
 
 use crate::insight::diagnose::against::change::Change;
 use crate::insight::diagnose::finding::{Status, Value};
-use crate::insight::identify::AXES;
+use crate::model::vehicle::AXES;
 use std::collections::BTreeMap;
 
 /// What a change is called; of several `members` it is a set.
