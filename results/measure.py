@@ -40,6 +40,10 @@ COMMANDS = {
                        "--csv results/against-seed22.csv"),
     "against-seed23": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 23 --jobs 2 "
                        "--csv results/against-seed23.csv"),
+    "against-by-motors": ([], "5 min", " && ".join(
+        f"{BENCH} --against --by-motors --seconds 60 --jobs 2 --csv results/against-by-motors.csv {pairs}"
+        for pairs in ["--seed 33 --n 1000", "--seed 30 --n 200", "--seed 31 --n 12 --only imu_late",
+                      "--seed 32 --n 12 --only gyro_filter"])),
     "against-seed16": ([], "0.5 h", f"{BENCH} --against --n 40 --seconds 60 --seed 16 --jobs 2 "
                        "--csv results/against-seed16.csv"),
     "measured": (["logs"], "5 min", "python3 tests/python/measured_flights.py target/release/racer {logs} "
@@ -228,7 +232,8 @@ def main():
             parser.error(f"{name} needs --with {' '.join(f'{key}=...' for key in missing)}")
         command = command.format(**given)
         print(f"$ {command}", flush=True)
-        subprocess.run(shlex.split(command), cwd=ROOT, check=True)
+        for one in command.split(" && "):
+            subprocess.run(shlex.split(one), cwd=ROOT, check=True)
     if not options.names:
         print("training     3 h, each row at once  results/training.csv, learning.csv")
         print("tried        6 h, each row at once  results/tried.csv")

@@ -354,6 +354,28 @@ def against(file="against"):
     return table([f"{len(without)} without a change, {len(changed)} with one", "pairs"], body)
 
 
+def by_motors():
+    """What motor outputs alone name, by what changed."""
+    pairs = rows("against-by-motors")
+    told = {"gains": "gains of the rate loop", "low_authority": "turning authority, all axes",
+            "weak_yaw": "turning authority, yaw alone", "slow_motors": "slower motors",
+            "motor_braking": "motors that brake late", "gyro_filter": "a gyro's filter, 2 to 5 ms",
+            "imu_late": "a late IMU"}
+    groups = [("nothing", ""), *((name, cause) for cause, name in told.items())]
+    body = []
+    for name, cause in groups:
+        counts = []
+        for seeds in (["33"], ["30", "31", "32"]):
+            of = [r for r in pairs if r["seed"] in seeds and r["changed"] == cause]
+            named = sum(r["first_or_set"] == "1" if cause else bool(r["said"]) for r in of)
+            counts.append(wilson(named, len(of)))
+        body.append((name, *counts))
+    others = [r for r in pairs if r["changed"] and r["changed"] not in told]
+    wrong = lambda seeds: [bool(r["said"]) for r in others if r["seed"] in seeds]
+    body.append(("another cause", *(wilson(sum(w), len(w)) for w in (wrong(["33"]), wrong(["30", "31", "32"])))))
+    return table(["what changed", "given a name, `--seed 33`", "seeds 30 to 32"], body)
+
+
 def plan():
     """What planned flights tell apart."""
     tied = [r for r in latest("plan") if r["apart"] and r["tied"] == "1"]
@@ -399,7 +421,7 @@ def precision():
 
 
 TABLES = [training, budgets, refinement, tried, loop, rotorpy, rotorpy_diagnosis, other_truth, other_groups, own_truth,
-          retraining, soak, other_extended, against, plan, blackbox, precision,
+          retraining, soak, other_extended, against, by_motors, plan, blackbox, precision,
           measured_names, measured_unseen, measured_all]
 MADE = {f.__name__: f for f in TABLES}
 
