@@ -40,6 +40,8 @@ COMMANDS = {
                        "--csv results/against-seed22.csv"),
     "against-seed23": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 23 --jobs 2 "
                        "--csv results/against-seed23.csv"),
+    "against-300s": ([], "4 h", f"{BENCH} --against --n 100 --seconds 300 --seed 24 --jobs 2 "
+                     "--csv results/against-300s.csv"),
     "against-by-motors": ([], "5 min", " && ".join(
         f"{BENCH} --against --by-motors --seconds 60 --jobs 2 --csv results/against-by-motors.csv {pairs}"
         for pairs in ["--seed 33 --n 1000", "--seed 30 --n 200", "--seed 31 --n 12 --only imu_late",
