@@ -33,14 +33,16 @@ CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were th
     CHANGED_SENSOR = 1.5, Assumed("of 146 pairs without a change three were given one, of 0.8 and 0.9");
     /// Change of a sensor's constant error that matters, in small typical sizes.
     CHANGED_BIAS = 4.0, Assumed("it is another after every switching on");
-    /// Change of a rate loop's gain, by motor outputs, that matters.
-    CHANGED_GAIN = 0.3, Assumed("other causes moved what is read of it by up to a quarter, in 100 pairs");
+    /// Change of a rate loop's gains, by motor outputs, that matters.
+    CHANGED_GAIN = 0.25, Assumed("other causes moved what is read of them by up to a quarter, in 100 pairs");
     /// Error of such a gain beside its spread over the time, as a share.
     GAIN_ERROR = 0.055, Assumed("where no gain changed, 276 axes then differ by one standard deviation");
-    /// Standard deviations that it changes by about each axis, at least.
-    GAIN_DEVIATIONS = 2.0, Assumed("of each axis, and both have to say so");
-    /// And about both together.
-    GAINS_DEVIATIONS = 6.0, Assumed("of 97 unchanged pairs none had two, the same way, beyond 2 and together 4.8");
+    /// Standard deviations that each changes by, at least.
+    GAIN_DEVIATIONS = 1.0, Assumed("an axis that tells nothing has no part in it");
+    /// Standard deviations that the gains of roll and pitch change by together, at least.
+    GAINS_DEVIATIONS = 5.0, Assumed("of 291 pairs with other changes or none, one share of both had 4.3");
+    /// Standard deviations up to which they are one share.
+    GAINS_APART = 2.0, Assumed("two that had more than 5.5 deviations together were 2.7 and 5.2 apart");
     /// Share of the turns that motor outputs have to explain.
     GAIN_TURNED = 0.9, Assumed("0.97 of most flights, less where a gap or a hit is among them");
     /// Share of those outputs that errors and turns have to explain.

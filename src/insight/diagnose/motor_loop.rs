@@ -60,27 +60,29 @@ pub struct MotorLoop {
 pub fn motor_loop(log: &Log, usable: &[Span]) -> Option<MotorLoop> {
     let outputs = Outputs::new(&log.motors, usable)?;
     let plants = plants(&outputs, log)?;
-    let about = |k: usize| about(&outputs, log, &plants[k], k);
-    let gains = about(0).zip(about(1)).map(|(roll, pitch)| [roll, pitch]);
+    // Commands are as late about one axis as about the other.
+    let at = |delay_s: f64| {
+        let [roll, pitch] = [0, 1].map(|k| about(&outputs, log, &plants[k], k, delay_s));
+        Some([roll?, pitch?])
+    };
+    let left = |gains: &[RateGain; AXES]| gains.iter().map(|g| 1.0 - g.answered).product::<f64>();
+    let gains = DELAYS_S.into_iter().filter_map(at).min_by(|a, b| left(a).total_cmp(&left(b)));
     let volts: Vec<f64> = log.battery.column(0).into_iter().filter(|v| v.is_finite()).collect();
     Some(MotorLoop { plants, gains, volts: median(&volts) })
 }
 
-/// The law about axis `k`.
-fn about(outputs: &Outputs, log: &Log, plant: &TurningPlant, k: usize) -> Option<RateGain> {
+/// The law about axis `k`, with commands that are late by so much.
+fn about(outputs: &Outputs, log: &Log, plant: &TurningPlant, k: usize, delay_s: f64) -> Option<RateGain> {
     let [behind, sum] = outputs.lagged(plant.pattern, plant.lag_s);
     let (sent, rate): (Vec<f64>, Vec<f64>) = (log.setpoint.column(k), sum);
     let apart = outputs.apart(ANSWER_S);
-    let laws = DELAYS_S.iter().filter_map(|&delay_s| {
-        let late: Vec<f64> = outputs.time.iter().map(|t| t - delay_s).collect();
-        let wanted = held(&log.setpoint.time_s, &sent, &late);
-        let at = outputs.pairs(apart, |i| outputs.usable[i] && outputs.free[i] && wanted[i].is_finite());
-        let moved = |x: &[f64], scale: f64| at.iter().map(|&i| scale * (x[i + apart] - x[i])).collect::<Vec<_>>();
-        let columns = vec![moved(&rate, plant.authority), moved(&behind, plant.authority), moved(&wanted, 1.0)];
-        let law = law(columns, moved(&outputs.turning[plant.pattern], 1.0), outputs.stretches(&at))?;
-        Some(RateGain { delay_s, ..law })
-    });
-    laws.max_by(|a, b| a.answered.total_cmp(&b.answered))
+    let late: Vec<f64> = outputs.time.iter().map(|t| t - delay_s).collect();
+    let wanted = held(&log.setpoint.time_s, &sent, &late);
+    let at = outputs.pairs(apart, |i| outputs.usable[i] && outputs.free[i] && wanted[i].is_finite());
+    let moved = |x: &[f64], scale: f64| at.iter().map(|&i| scale * (x[i + apart] - x[i])).collect::<Vec<_>>();
+    let columns = vec![moved(&rate, plant.authority), moved(&behind, plant.authority), moved(&wanted, 1.0)];
+    let law = law(columns, moved(&outputs.turning[plant.pattern], 1.0), outputs.stretches(&at))?;
+    Some(RateGain { delay_s, ..law })
 }
 
 /// Robust fit of the outputs `moved` by `columns`, the rate first; rows belong to a `stretch` of time each.

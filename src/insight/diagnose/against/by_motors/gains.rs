@@ -1,10 +1,10 @@
 //! Other gains of the flight controller's rate loop, by what it sends to the motors. The rates themselves hardly show
 //! them: motors that are slow, or at an end of their range, turn the vehicle as they can.
 
-use super::moved::{Moved, Words, change, deviations, sure};
+use super::moved::{Moved, Words, change, sure};
 use crate::insight::criteria::changed::{
-    CHANGED_GAIN, GAIN_ANSWERED, GAIN_DEVIATIONS, GAIN_ERROR, GAIN_TURNED, GAINS_DEVIATIONS, SAME_AUTHORITY, SAME_LAG,
-    SAME_LOOP_DELAY_S,
+    CHANGED_GAIN, GAIN_ANSWERED, GAIN_DEVIATIONS, GAIN_ERROR, GAIN_TURNED, GAINS_APART, GAINS_DEVIATIONS,
+    SAME_AUTHORITY, SAME_LAG, SAME_LOOP_DELAY_S,
 };
 use crate::insight::diagnose::against::change::Change;
 use crate::insight::diagnose::motor_loop::{AXES, MotorLoop, RateGain};
@@ -26,11 +26,7 @@ fn changed(loops: &[MotorLoop; 2]) -> Option<Change> {
     let [before, after] = [loops[0].gains?, loops[1].gains?];
     let pairs: [[RateGain; 2]; AXES] = [0, 1].map(|k| [before[k], after[k]]);
     let moved: [Moved; AXES] = [0, 1].map(|k| (k, pairs[k].map(|g| (g.gain, error(&g)))));
-    let by = pairs.map(|[a, b]| (b.gain / a.gain).ln());
-    let one_way = by.iter().all(|m| m.signum() == by[0].signum() && m.abs() > (1.0 + CHANGED_GAIN.get()).ln());
-    let sure = moved.iter().all(|m| sure(m).abs() > GAIN_DEVIATIONS.get());
-    let evident = sure && deviations(&moved) > GAINS_DEVIATIONS.get();
-    if !(one_way && evident && (0..AXES).all(|k| told(loops, &pairs[k], k))) {
+    if !(one_way(&moved) && (0..AXES).all(|k| told(loops, &pairs[k], k))) {
         return None;
     }
     let words = Words {
@@ -41,6 +37,21 @@ fn changed(loops: &[MotorLoop; 2]) -> Option<Change> {
         number: ("gain", "of a full output, per rad/s"),
     };
     Some(change(words, &moved))
+}
+
+/// Whether the gains moved by one share, as far as they tell, that is evident and matters. What else moves a gain that
+/// is read from outputs seldom moves that of the other axis alike.
+fn one_way(moved: &[Moved; AXES]) -> bool {
+    let by = moved.map(|(_, [before, after])| (after.0 / before.0).ln());
+    let weights = [0, 1].map(|k| (sure(&moved[k]) / by[k]).powi(2));
+    let known: f64 = weights.iter().sum();
+    let mean = (by[0] * weights[0] + by[1] * weights[1]) / known;
+    let apart = (by[0] - by[1]) / weights.iter().map(|w| 1.0 / w).sum::<f64>().sqrt();
+    by[0] * by[1] > 0.0
+        && moved.iter().all(|m| sure(m).abs() > GAIN_DEVIATIONS.get())
+        && apart.abs() < GAINS_APART.get()
+        && mean.abs() > (1.0 + CHANGED_GAIN.get()).ln()
+        && mean.abs() * known.sqrt() > GAINS_DEVIATIONS.get()
 }
 
 /// Standard deviation of a gain, with what the spread over the time of a flight does not show.
@@ -83,6 +94,8 @@ mod tests {
         let before = || set([0.15, 0.13]);
         let found = changed(&[before(), set([0.09, 0.08])]).expect("gains");
         assert!((found.difference["gain.roll"].value + 0.06).abs() < 1e-12 && found.deviations > 7.0, "{found:?}");
+        assert!(changed(&[before(), set([0.11, 0.095])]).is_some(), "28 % of both");
+        assert!(changed(&[before(), set([0.125, 0.11])]).is_none(), "17 % of both");
         assert!(changed(&[before(), set([0.09, 0.12])]).is_none(), "one axis alone");
         assert!(changed(&[before(), set([0.09, 0.2])]).is_none(), "one up, one down");
         for other in [
