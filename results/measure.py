@@ -42,9 +42,9 @@ COMMANDS = {
                        "--csv results/against-seed23.csv"),
     "against-300s": ([], "4 h", f"{BENCH} --against --n 100 --seconds 300 --seed 24 --jobs 2 "
                      "--csv results/against-300s.csv"),
-    "against-by-motors": ([], "5 min", " && ".join(
+    "against-by-motors": ([], "10 min", " && ".join(
         f"{BENCH} --against --by-motors --seconds 60 --jobs 2 --csv results/against-by-motors.csv {pairs}"
-        for pairs in ["--seed 33 --n 1000", "--seed 30 --n 200", "--seed 31 --n 12 --only imu_late",
+        for pairs in ["--seed 37 --n 1000", "--seed 33 --n 1000", "--seed 30 --n 200", "--seed 31 --n 12 --only imu_late",
                       "--seed 32 --n 12 --only gyro_filter"])),
     "against-seed16": ([], "0.5 h", f"{BENCH} --against --n 40 --seconds 60 --seed 16 --jobs 2 "
                        "--csv results/against-seed16.csv"),
