@@ -104,7 +104,7 @@ mod tests {
             after(|plant, _| plant.turned = 0.5),
             after(|_, gain| gain.delay_s = 0.008),
             after(|_, gain| gain.answered = 0.9),
-            after(|_, gain| gain.sd = 0.03),
+            after(|_, gain| gain.sd = 0.08),
         ] {
             assert!(changed(&[before(), other.clone()]).is_none(), "{other:?}");
         }
