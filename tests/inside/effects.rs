@@ -339,6 +339,11 @@ fn the_battery_follows_the_equations() {
         let s = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], full, open);
         close(craft(&p, s).terminal_voltage(), open + want, 1e-12, "curve");
     }
+    let p = one("ocv_curve", &[0.0, 0.4]);
+    for (open, want) in [(24.0, 0.4), (22.0, 0.4), (23.0, -0.2), (23.5, 0.4 * (1.5 * 0.25 - 0.5)), (24.4, 0.4)] {
+        let s = State::new([0.0; 3], [0.0; 3], [1.0, 0.0, 0.0, 0.0], full, open);
+        close(craft(&p, s).terminal_voltage(), open + want, 1e-12, "bend");
+    }
 }
 
 /// The specific force in one moment, by effect, from equations written anew.

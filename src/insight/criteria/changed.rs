@@ -63,8 +63,16 @@ CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were th
     CHANGED_LAG = 0.25, Assumed("two steps of 14 % about both axes: of 197 pairs none without another");
     /// Error of such a lag, as a share.
     LAG_ERROR = 0.07, Assumed("half a step");
+    /// By how much an odometry is earlier or later in another flight, whatever the IMU's clock does, s.
+    SAME_ODOMETRY_S = 3e-3, Assumed("up to 2.3 ms between flights of one vehicle");
+    /// The same, as a share of the delay that it is held against.
+    SAME_ODOMETRY_SHARE = 0.1, Assumed("both are known to less");
+    /// Share of what clocks drift apart by over a flight that an uneven one delays signals by, at most.
+    UNEVEN_CLOCK = 0.1, Theory("one that grows from nothing leaves its line by a twelfth to a sixth");
     /// Share of the best gain from which the plainest of those that are tied is preferred.
     PLAIN_SHARE = 0.9, Assumed("slower gains did 0.95 of what a response that slows with the voltage did");
+    /// Share of a whole's largest part up to which another part did not change.
+    PART_SHARE = 0.4, Assumed("a late throttle: rates by -0.2 of it; a late link moves all by one size");
     /// Squared standard deviations over stretches of time from which a difference is worth a fit.
     CHANGED_EVIDENCE = 4.5, Assumed("that of an effect; more would ask for more stretches than some causes show in");
     /// Differences that are found at most.

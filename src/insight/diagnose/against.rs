@@ -8,12 +8,15 @@
 mod alike;
 pub mod by_motors;
 mod change;
+mod clock;
 mod columns;
 mod flown;
 mod judge;
 mod motor;
+mod part;
 mod search;
 mod sizes;
+mod stamped;
 mod suspect;
 mod would_show;
 
@@ -44,10 +47,10 @@ pub fn compare(before: Vec<Quality>, after: Vec<Quality>, vehicle: &Vehicle, wat
     let loops = together(earlier).zip(together(last)).map(|(before, after)| [before, after]);
     let contrasted = |logs| {
         let mut problem = super::problem(logs, vehicle);
-        problem.contrast = Some(Contrast::new(&mut problem.model, later.clone()));
         // That a late gyro undoes what moved the odometry to it would be a jump between one set and the other; each
         // set's odometry is moved in every fit anyway.
-        problem.records.iter_mut().for_each(|record| record.moved = 0.0);
+        let moved = problem.records.iter_mut().map(|record| std::mem::take(&mut record.moved)).collect();
+        problem.contrast = Some(Contrast::new(&mut problem.model, later.clone(), moved));
         problem
     };
     let (problem, selection, left_out) =
@@ -84,6 +87,7 @@ fn changes(
     loops: Option<&[MotorLoop; 2]>,
 ) -> Changes {
     let fitted = &FittedSelection::new(problem, &search.selection);
+    let x = &fitted.point().x;
     let mut changes = judge::all(fitted, suspects, &search.found);
     changes.extend(search.rejected.iter().cloned());
     // What every fit allows for is worth a word where it is named.
@@ -96,6 +100,8 @@ fn changes(
     if let Some(loops) = loops {
         by_motors::add(loops, &mut changes);
     }
+    clock::doubt(problem, &mut changes);
+    stamped::tell(problem, x, &mut changes);
     // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first, the
     // surest of it before all, told from all others or not.
     let own = [Role::ConstantError, Role::ClockFast];
@@ -108,7 +114,6 @@ fn changes(
     let rank = |c: &Change| c.deviations + place(c);
     changes.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
     let named = |id: &str| changes.iter().any(|c| c.cause == id && c.status != Status::Suspected);
-    let x = &fitted.point().x;
     let alike = fitted.selection.added.iter().filter(|a| !named(a.card.id) && is_material(a.card, x));
     let both = alike
         .map(|a| Both { effect: a.card.id, name: a.card.name, parameters: shown::parameters(fitted, a.card) })

@@ -35,6 +35,9 @@ pub struct Card {
     pub role: Role,
     /// Numbers of the compact model that take it up where it is not fitted.
     pub absorbed_by: &'static [CompactNumber],
+    /// Whether its equation turns the voltage about the middle of the battery where controllers do about a full one.
+    /// One flight does not tell that from another thrust, two with and without it do.
+    pub about_full: bool,
     /// Effects of all axes beside which this one is yaw's own share of the same.
     pub apart_from: &'static [&'static str],
     /// Which part of a flight controller's answer it is, where identification looks for it.
@@ -74,6 +77,7 @@ impl Card {
         response: RateResponse::FirstOrder,
         role: Role::InStages,
         absorbed_by: &[],
+        about_full: false,
         apart_from: &[],
         controller: None,
         twin: None,

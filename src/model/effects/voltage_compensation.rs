@@ -16,6 +16,7 @@ impl Effect for VoltageCompensation {
         writes: &[Quantity::SpecificForce],
         channels: &[ResidualChannel::Force],
         absorbed_by: &[CompactNumber::Thrust],
+        about_full: true,
         signature: "the thrust does not fall with the voltage as the thrust curve says",
         rivals: &["thrust_fade"],
         manoeuvre: (

@@ -7,8 +7,13 @@ use crate::insight::diagnose::problem::{ChannelValues, Problem};
 use crate::insight::diagnose::score::{ScoreTest, score};
 use crate::insight::diagnose::whiten::Whitener;
 use crate::insight::estimate::gram::Grams;
+use crate::model::effects::Card;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+
+/// Ridge of a cause in both sets, as a share of its own squares: the thrust curve may take it up, exactly, so that
+/// nothing could be inverted.
+const BESIDE_RIDGE: f64 = 1e-6;
 
 /// A suspect in one direction: the score of its difference beside the same in both sets.
 pub struct Tested {
@@ -41,7 +46,9 @@ pub fn tests(
 ) -> Vec<Tested> {
     let residual = whitener.apply(&point.residual, &problem.rows);
     let n = point.free.len();
-    let held = |s: &Suspect| s.card.is_none() || s.numbers.clone().any(|k| point.free.contains(&k));
+    // What the thrust takes up, exactly, where both sets have it is tested like a number of the compact model.
+    let alone = |card: &Card| card.about_full;
+    let held = |s: &Suspect| s.card.is_none_or(alone) || s.numbers.clone().any(|k| point.free.contains(&k));
     let open = |s: &Suspect| s.own.iter().all(|k| !point.free.contains(k));
     let mut slopes: Vec<usize> = Vec::new();
     let mut all = Vec::new();
@@ -85,6 +92,7 @@ fn tested(test: Test, grams: &Grams, later: &[bool], prior: &[f64]) -> Option<Te
     let columns: Vec<(usize, bool)> = rest.iter().chain(&test.group).copied().chain([residual]).collect();
     let own = masked(grams, later, &columns);
     let mut prior = prior.to_vec();
+    prior.extend(test.beside.map(|_| BESIDE_RIDGE * own.sum[(prior.len(), prior.len())]));
     prior.resize(columns.len(), 0.0);
     let places: Vec<usize> = (0..rest.len()).collect();
     let group: Vec<usize> = (rest.len()..columns.len() - 1).collect();

@@ -5,6 +5,7 @@
 use super::change::Change;
 use super::columns::{Tested, tests};
 use super::judge;
+use super::part;
 use super::suspect::{FoundDifference, Suspect};
 use crate::insight::criteria::changed::{CHANGED_EVIDENCE, MOST_CHANGES, MOST_TRIED, PLAIN_SHARE};
 use crate::insight::criteria::evident::{BOUNDED_MERIT, GAIN_WORTH_A_FIT, LEAST_GAIN, SHORT_LIST};
@@ -95,6 +96,8 @@ impl<'a> DifferenceSearch<'a> {
         let nearly = |t: &&Tried| tied(first, t) && merit(t) > PLAIN_SHARE.get() * merit(first);
         let plainness = |t: &&Tried| self.suspects[t.suspect].plainness();
         let best = std::iter::once(first).chain(tried.iter().filter(nearly)).min_by_key(plainness).unwrap_or(first);
+        let part = part::only(self.problem, &self.selection, self.suspects, &self.suspects[best.suspect], &best.point);
+        let best = part.and_then(|part| tried.iter().find(|t| t.suspect == part)).unwrap_or(best);
         let near = tried.iter().filter(|t| t.suspect != best.suspect && tied(best, t));
         let pending = near.map(|t| (t.suspect, t.gain)).collect();
         let (suspect, x, free) = (best.suspect, best.point.x.clone(), best.point.free.clone());

@@ -131,7 +131,8 @@ impl Suspect {
     /// Whether the compact model takes it up where both sets have it: then only the difference can be told.
     pub fn is_absorbed(&self) -> bool {
         let both_ways = |card: &Card| card.parameters[0].low < 0.0;
-        self.card.is_some_and(|card| card.absorbed_by.contains(&CompactNumber::Thrust) && both_ways(card))
+        let by_thrust = |card: &Card| card.absorbed_by.contains(&CompactNumber::Thrust) && both_ways(card);
+        self.card.is_some_and(|card| card.about_full || by_thrust(card))
     }
 
     /// How plain an answer it is, 0 the plainest: a number of the compact model, another cause in the vehicle, one in
