@@ -40,6 +40,10 @@ COMMANDS = {
                        "--csv results/against-seed22.csv"),
     "against-seed23": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 23 --jobs 2 "
                        "--csv results/against-seed23.csv"),
+    "against-seed26": ([], "1 h", f"{BENCH} --against --n 60 --seconds 60 --seed 26 --jobs 2 "
+                       "--csv results/against-seed26.csv"),
+    "against-voltage": ([], "0.2 h", f"{BENCH} --against --n 8 --seconds 60 --seed 44 --jobs 2 --only esc_voltage "
+                        "--csv results/against-voltage.csv"),
     "against-300s": ([], "4 h", f"{BENCH} --against --n 100 --seconds 300 --seed 24 --jobs 2 "
                      "--csv results/against-300s.csv"),
     "against-by-motors": ([], "10 min", " && ".join(

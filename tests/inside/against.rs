@@ -3,7 +3,7 @@
 use crate::truth::Vehicle;
 use crate::truth::effects::Hidden;
 use crate::truth::hidden::{Setting, Style, fly};
-use crate::truth::other::{self, Airframe};
+use crate::truth::other::{self, Airframe, causes};
 use racer::flight::Log;
 use racer::insight::diagnose::against::{Changes, compare};
 use racer::insight::quality::{Quality, check};
@@ -20,8 +20,12 @@ fn flown(vehicle: &Vehicle, seed: u64, effects: &[(&str, f64)]) -> Log {
 }
 
 fn flown_other(airframe: &Airframe, seed: u64) -> Quality {
+    flown_with(airframe, seed, &[])
+}
+
+fn flown_with(airframe: &Airframe, seed: u64, hidden: &[Hidden]) -> Quality {
     let setting = Setting { seed, seconds: 60.0, noise: 1.0, imu_hz: 250.0, style: Style::Excited };
-    check(&other::fly(airframe, &[], &setting))
+    check(&other::fly(airframe, hidden, &setting))
 }
 
 fn compared(before: &Log, after: &Log) -> Changes {
@@ -95,6 +99,20 @@ fn what_the_model_gets_wrong_of_both_flights_does_not_hide_a_change() {
     }
     let same = compare(vec![flown_other(&airframe, 1)], vec![flown_other(&airframe, 2)], &vehicle, &mut |_, _| ());
     assert!(!same.changed, "{:?}", named(&same));
+}
+
+/// Controllers make up for what a full battery had more: neither other propellers, nor motors that stay cool.
+#[test]
+fn voltage_compensation_that_came_is_named_with_its_share() {
+    let airframe = Airframe::draw(SEED);
+    let compensated = causes::draw("esc_voltage", 1.0, &mut StdRng::seed_from_u64(SEED));
+    let size = compensated.size;
+    let vehicle = airframe.nominal().in_racer();
+    let [before, after] = [flown_other(&airframe, 1), flown_with(&airframe, 2, &[compensated])];
+    let changes = compare(vec![before], vec![after], &vehicle, &mut |_, _| ());
+    assert_eq!(named(&changes), ["voltage_compensation"]);
+    let share = &changes.changes[0].difference["share"];
+    assert!((share.value - size).abs() < 0.2 && share.low > 0.0, "{share:?} of {size}");
 }
 
 /// Slow motors turn a vehicle as they can, whatever the gains are: rates hardly tell, what the motors are sent does.

@@ -92,9 +92,9 @@ impl<'a> DifferenceSearch<'a> {
         tried.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
         let worth = |t: &&Tried| merit(t) >= LEAST_GAIN.get() + self.suspects[t.suspect].own.len() as f64;
         let Some(first) = tried.first().filter(worth) else { return false };
-        // Of those that do nearly as well the plainest is the answer.
+        // Of those that do nearly as well the plainest is the answer, of a size that is usual.
         let nearly = |t: &&Tried| tied(first, t) && merit(t) > PLAIN_SHARE.get() * merit(first);
-        let plainness = |t: &&Tried| self.suspects[t.suspect].plainness();
+        let plainness = |t: &&Tried| (self.suspects[t.suspect].plainness(), self.is_unusual(t));
         let best = std::iter::once(first).chain(tried.iter().filter(nearly)).min_by_key(plainness).unwrap_or(first);
         let part = part::only(self.problem, &self.selection, self.suspects, &self.suspects[best.suspect], &best.point);
         let best = part.and_then(|part| tried.iter().find(|t| t.suspect == part)).unwrap_or(best);
@@ -195,9 +195,22 @@ impl<'a> DifferenceSearch<'a> {
 
     /// Whether an effect ends at a bound in either set: then it stands in for something else.
     fn bounded(&self, tried: &Tried) -> bool {
+        let is_at_end = |card: &'static Card, x: &[f64]| is_bounded(self.problem, card, x);
+        self.in_a_set(tried, is_at_end)
+    }
+
+    /// Whether an effect is larger than a racing quadrotor has it, in either set.
+    fn is_unusual(&self, tried: &Tried) -> bool {
+        let is_large =
+            |card: &'static Card, x: &[f64]| card.sizes().any(|(i, p)| x[span(card).start + i].abs() > p.typical[1]);
+        self.in_a_set(tried, is_large)
+    }
+
+    /// Whether an effect is so in the first or the last flight, one of either set.
+    fn in_a_set(&self, tried: &Tried, is_so: impl Fn(&'static Card, &[f64]) -> bool) -> bool {
         let Some(card) = self.suspects[tried.suspect].card else { return false };
         let flights = [0, self.problem.records.len() - 1];
-        flights.into_iter().any(|f| is_bounded(self.problem, card, &self.problem.numbers(f, &tried.point.x)))
+        flights.into_iter().any(|f| is_so(card, &self.problem.numbers(f, &tried.point.x)))
     }
 }
 
