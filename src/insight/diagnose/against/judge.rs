@@ -19,7 +19,6 @@ use crate::insight::diagnose::impact::integrated;
 use crate::insight::diagnose::pays::pays;
 use crate::insight::diagnose::problem::Problem;
 use crate::insight::diagnose::score::{ScoreTest, score};
-use crate::insight::diagnose::size::is_bounded;
 use crate::insight::diagnose::unseen::thirds;
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
@@ -50,7 +49,7 @@ fn judge(fitted: &FittedSelection, suspects: &[Suspect], found: &FoundDifference
         Some("the stretches of flight do not agree well enough".to_string())
     } else if !matters(fitted, suspect) || impact < least {
         Some("too small for anybody to notice".into())
-    } else if is_bounded_in_a_set(fitted, suspect) {
+    } else if suspect.is_bounded(fitted.problem, &fitted.point().x) {
         Some("its size is at an end of its range: it stands in for something else".into())
     } else if pays < PAYS_DEVIATIONS.get() {
         Some("on flight that was not used for fitting it does not pay".into())
@@ -104,14 +103,6 @@ fn chance(fitted: &FittedSelection, own: &[usize]) -> (f64, f64) {
     let d = nalgebra::DVector::from_iterator(own.len(), own.iter().map(|&i| point.x[point.free[i]]));
     let squares = (d.transpose() * inner * &d)[(0, 0)];
     (squares, chi_squared_chance(squares, own.len()))
-}
-
-/// Whether an effect is at an end of its range before or after.
-fn is_bounded_in_a_set(fitted: &FittedSelection, suspect: &Suspect) -> bool {
-    let problem = fitted.problem;
-    let flights = [0, problem.records.len() - 1];
-    let at_end = |f: usize, card| is_bounded(problem, card, &problem.numbers(f, &fitted.point().x));
-    suspect.card.is_some_and(|card| flights.into_iter().any(|f| at_end(f, card)))
 }
 
 /// Whether anybody would notice a difference of this size.

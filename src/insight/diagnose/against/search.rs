@@ -17,7 +17,6 @@ use crate::insight::diagnose::fitted::FittedSelection;
 use crate::insight::diagnose::numbers::span;
 use crate::insight::diagnose::problem::Problem;
 use crate::insight::diagnose::select::Selection;
-use crate::insight::diagnose::size::is_bounded;
 use crate::model::effects::{Card, are_rivals};
 use rayon::prelude::*;
 
@@ -193,24 +192,15 @@ impl<'a> DifferenceSearch<'a> {
         x
     }
 
-    /// Whether an effect ends at a bound in either set: then it stands in for something else.
     fn bounded(&self, tried: &Tried) -> bool {
-        let is_at_end = |card: &'static Card, x: &[f64]| is_bounded(self.problem, card, x);
-        self.in_a_set(tried, is_at_end)
+        self.suspects[tried.suspect].is_bounded(self.problem, &tried.point.x)
     }
 
     /// Whether an effect is larger than a racing quadrotor has it, in either set.
     fn is_unusual(&self, tried: &Tried) -> bool {
-        let is_large =
-            |card: &'static Card, x: &[f64]| card.sizes().any(|(i, p)| x[span(card).start + i].abs() > p.typical[1]);
-        self.in_a_set(tried, is_large)
-    }
-
-    /// Whether an effect is so in the first or the last flight, one of either set.
-    fn in_a_set(&self, tried: &Tried, is_so: impl Fn(&'static Card, &[f64]) -> bool) -> bool {
-        let Some(card) = self.suspects[tried.suspect].card else { return false };
-        let flights = [0, self.problem.records.len() - 1];
-        flights.into_iter().any(|f| is_so(card, &self.problem.numbers(f, &tried.point.x)))
+        self.suspects[tried.suspect].in_a_set(self.problem, &tried.point.x, |card, x| {
+            card.sizes().any(|(i, p)| x[span(card).start + i].abs() > p.typical[1])
+        })
     }
 }
 

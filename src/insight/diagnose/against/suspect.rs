@@ -8,6 +8,7 @@ use crate::insight::diagnose::candidates::base_numbers;
 use crate::insight::diagnose::contrast::Contrast;
 use crate::insight::diagnose::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
 use crate::insight::diagnose::problem::Problem;
+use crate::insight::diagnose::size::is_bounded;
 use crate::model::effects::{self, Card, CompactNumber, EffectKind, Role};
 use std::ops::Range;
 
@@ -133,6 +134,17 @@ impl Suspect {
         let both_ways = |card: &Card| card.parameters[0].low < 0.0;
         let by_thrust = |card: &Card| card.absorbed_by.contains(&CompactNumber::Thrust) && both_ways(card);
         self.card.is_some_and(|card| card.about_full || by_thrust(card))
+    }
+
+    /// Whether it is an effect that is so before or after, at the numbers `x`: in the first flight or the last.
+    pub fn in_a_set(&self, problem: &Problem, x: &[f64], is_so: impl Fn(&'static Card, &[f64]) -> bool) -> bool {
+        let flights = [0, problem.records.len() - 1];
+        self.card.is_some_and(|card| flights.into_iter().any(|f| is_so(card, &problem.numbers(f, x))))
+    }
+
+    /// Whether it ends at a bound of its range before or after: then it stands in for something else.
+    pub fn is_bounded(&self, problem: &Problem, x: &[f64]) -> bool {
+        self.in_a_set(problem, x, |card, x| is_bounded(problem, card, x))
     }
 
     /// How plain an answer it is, 0 the plainest: a number of the compact model, another cause in the vehicle, one in
