@@ -115,6 +115,22 @@ fn voltage_compensation_that_came_is_named_with_its_share() {
     assert!((share.value - size).abs() < 0.2 && share.low > 0.0, "{share:?} of {size}");
 }
 
+/// Another pack, which falls evenly: one cause, though its voltage falls less far in the mean as well.
+#[test]
+fn a_curved_discharge_that_went_is_named_and_no_slower_discharge_beside_it() {
+    let mut airframe = Airframe::draw(SEED);
+    // A minute takes all of the pack.
+    airframe.discharge *= 5.0;
+    let curved = causes::draw("ocv_bent", 1.0, &mut StdRng::seed_from_u64(SEED));
+    let vehicle = airframe.nominal().in_racer();
+    let [before, after] = [flown_with(&airframe, 1, &[curved]), flown_other(&airframe, 2)];
+    let changes = compare(vec![before], vec![after], &vehicle, &mut |_, _| ());
+    assert_eq!(named(&changes), ["ocv_curve"]);
+    // V (3 s - 3 s2 + s3) over the flight: a parabola of three eighths of V over 1.5 beside the line.
+    let bend = &changes.changes[0].difference["bend"];
+    assert!(bend.high < 0.0, "{bend:?}");
+}
+
 /// Slow motors turn a vehicle as they can, whatever the gains are: rates hardly tell, what the motors are sent does.
 #[test]
 fn gains_of_the_rate_loop_are_named_by_the_motors() {

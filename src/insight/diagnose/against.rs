@@ -25,13 +25,14 @@ use super::contrast::Contrast;
 use super::finding::{Diagnosis, Status};
 use super::fitted::FittedSelection;
 use super::motor_loop::{MotorLoop, motor_loop, together};
+use super::numbers::DISCHARGE;
 use super::problem::Problem;
 use super::select::Selection;
 use super::shown;
 use super::size::is_material;
 use crate::insight::Watch;
 use crate::insight::quality::Quality;
-use crate::model::effects::{self, Role};
+use crate::model::effects::{self, EffectKind, Role};
 use crate::model::vehicle::Vehicle;
 pub use change::{Both, Change, Changes, WouldShow};
 use rayon::prelude::*;
@@ -71,11 +72,14 @@ impl Changes {
     }
 }
 
-/// Differences that every fit allows for.
+/// Differences that every fit allows for. How far a pack falls is told with what else it does otherwise.
 fn allowed(search: &DifferenceSearch, suspects: &[Suspect]) -> Vec<FoundDifference> {
     let known = |suspect: usize| search.found.iter().any(|f| f.suspect == suspect);
     let own = |s: &Suspect| !s.own.is_empty() && s.own.iter().all(|k| search.selection.point.free.contains(k));
-    let allowed = (0..suspects.len()).filter(|&s| !known(s) && own(&suspects[s]));
+    let of_pack = |s: &Suspect| s.card.is_some_and(|card| card.kind == EffectKind::Battery);
+    let another_pack = search.found.iter().any(|f| of_pack(&suspects[f.suspect]));
+    let told = |s: &Suspect| another_pack && s.numbers.contains(&DISCHARGE);
+    let allowed = (0..suspects.len()).filter(|&s| !known(s) && own(&suspects[s]) && !told(&suspects[s]));
     allowed.map(|suspect| FoundDifference { suspect, ties: Vec::new() }).collect()
 }
 

@@ -37,9 +37,10 @@ pub fn base_numbers(problem: &Problem) -> Vec<usize> {
     let errors = [Role::ConstantError, Role::OdometryLate];
     let biases = errors.into_iter().flat_map(effects::acting).flat_map(span);
     let volts = BEGIN..BEGIN + problem.records.len();
-    // Constant errors and clocks are each set's own.
+    // Constant errors and clocks are each set's own, and how far its packs fall, which is as they are flown.
     let contrast = problem.contrast.as_ref();
-    let each = errors.into_iter().flat_map(effects::acting).flat_map(span).filter_map(|k| contrast?.of(k));
+    let each = errors.into_iter().flat_map(effects::acting).flat_map(span).chain([DISCHARGE]);
+    let each = each.filter_map(|k| contrast?.of(k));
     let own = effects::cards().flat_map(span).filter(|&k| problem.model.base[k] != 0.0);
     let mut all: Vec<usize> = (0..=DISCHARGE).chain(biases).chain(volts).chain(each).chain(own).collect();
     all.sort_unstable();

@@ -199,7 +199,7 @@ fn descend(
         (point.total() + penalty(problem, free, &point.x), point)
     };
     let before = before + penalty(problem, free, x);
-    normal.descend(&at, Shorter::Halved(least), before, squares).map(|(_, _, point)| point)
+    normal.descend(&at, Shorter::Seldom(least), before, squares).map(|(_, _, point)| point)
 }
 
 /// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken

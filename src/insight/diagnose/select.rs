@@ -7,7 +7,7 @@ use super::fit::{self, FitPoint};
 use super::numbers::{is_force, span};
 use super::problem::{ChannelValues, Problem};
 use super::rank::{Reach, rank};
-use super::size::is_material;
+use super::size::{is_bounded, is_material};
 use super::told::told;
 use super::trial::{Trial, tied, try_best, try_these};
 use super::unseen::seen;
@@ -207,9 +207,27 @@ impl<'a> Search<'a> {
         self.pending = near.map(|t| (t.card, t.gain)).collect();
         self.added.push(Added { card: best.card, ties: Vec::new() });
         let point = fit::fit(problem, &self.whitener, &best.point.x, &best.point.free);
+        let point = self.without_displaced(point, best.card);
         let bent = bend(problem, &self.whitener, point.clone(), &self.held());
         self.point = self.with_yaw_apart(&point, best.card, bent.total()).unwrap_or(bent);
         true
+    }
+
+    /// Without rivals of `new` that end at a bound beside it: it has taken their place. They are candidates again.
+    fn without_displaced(&mut self, point: FitPoint, new: &Card) -> FitPoint {
+        let displaced = |card: &Card| are_rivals(card, new) && is_bounded(self.problem, card, &point.x);
+        let gone: Vec<&'static Card> = self.held().into_iter().filter(|card| displaced(card)).collect();
+        if gone.is_empty() {
+            return point;
+        }
+        self.added.retain(|a| !gone.iter().any(|card| card.id == a.card.id));
+        let numbers: Vec<usize> = gone.iter().flat_map(|card| span(card)).collect();
+        let mut x = point.x;
+        numbers.iter().for_each(|&k| x[k] = self.problem.model.base[k]);
+        let free: Vec<usize> = point.free.iter().copied().filter(|k| !numbers.contains(k)).collect();
+        let point = fit::fit(self.problem, &self.whitener, &x, &free);
+        self.found.extend(candidates(self.problem, &self.whitener, &point, &gone));
+        point
     }
 
     /// Yaw's own share beside the effect `of` all axes, where that explains more than bending the response of `point`

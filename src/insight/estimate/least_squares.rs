@@ -29,16 +29,17 @@ pub enum Shorter<'a> {
     /// Levenberg and Marquardt: by more weight on the diagonal, remembered from one step to the next. It bends toward
     /// the steepest way down, which costs a new solution each time: for few numbers far from the minimum.
     Damped(&'a mut f64),
-    /// By half, down to a sixteenth: for steps whose squares cost a prediction of whole flights. No step at all where
-    /// one is expected to lower them by less than so much.
-    Halved(f64),
+    /// The same in few tries, forgotten: for steps whose squares cost a prediction of whole flights. A way that hardly
+    /// anything tells, where numbers stand in for one another, is given up first. No step at all where one is expected
+    /// to lower the squares by less than so much.
+    Seldom(f64),
 }
 
 /// Damping beyond which no step is left, and the least that is kept.
 const DAMPING: [f64; 2] = [1e-9, 100.0];
 
-/// Times that a step is halved and tried.
-const HALVINGS: i32 = 5;
+/// Damping of the few tries: none; what leaves a step but for what hardly anything tells; and what shortens all of it.
+const SELDOM: [f64; 6] = [0.0, 1e-5, 1e-3, 0.1, 1.0, 15.0];
 
 impl Normal<'_> {
     /// The step to the minimum, with `damping` times its own information on each number's diagonal. Numbers at a bound
@@ -100,22 +101,21 @@ impl Normal<'_> {
         before: f64,
         mut squares: impl FnMut(&[f64]) -> (f64, T),
     ) -> Option<(Vec<f64>, f64, T)> {
-        let mut lower = |step: &[f64], share: f64| {
-            let moved = |(n, by): (&Bounded, &f64)| (n.value + share * by).clamp(n.low, n.high);
+        let mut lower = |step: &[f64]| {
+            let moved = |(n, by): (&Bounded, &f64)| (n.value + by).clamp(n.low, n.high);
             let values: Vec<f64> = at.iter().zip(step).map(moved).collect();
             let (now, rest) = squares(&values);
             (now < before).then_some((values, now, rest))
         };
         match shorter {
-            Shorter::Halved(least) => {
-                let step = self.step(at, 0.0)?;
-                let expected: f64 = step.iter().zip(&self.downhill).map(|(by, down)| by * down).sum();
-                let times = if expected < least { 0 } else { HALVINGS };
-                (0..times).find_map(|halvings| lower(&step, 0.5f64.powi(halvings)))
+            Shorter::Seldom(least) => {
+                let expected = |step: &[f64]| step.iter().zip(&self.downhill).map(|(by, down)| by * down).sum::<f64>();
+                let steps = SELDOM.iter().map_while(|damping| self.step(at, *damping));
+                steps.take_while(|step| expected(step) >= least).find_map(|step| lower(&step))
             }
             Shorter::Damped(damping) => {
                 while *damping < DAMPING[1] {
-                    if let Some(found) = self.step(at, *damping).and_then(|step| lower(&step, 1.0)) {
+                    if let Some(found) = self.step(at, *damping).and_then(|step| lower(&step)) {
                         *damping = (*damping * 0.1).max(DAMPING[0]);
                         return Some(found);
                     }
@@ -141,7 +141,7 @@ mod tests {
             let normal = Normal { matrix: &matrix, downhill: vec![5.0 - y, 4.0 - y], ridge: vec![0.0; 2], within: &[] };
             let before = cost(&[0.0, y]).0;
             let mut damping = 1e-9;
-            for shorter in [Shorter::Halved(0.0), Shorter::Damped(&mut damping)] {
+            for shorter in [Shorter::Seldom(0.0), Shorter::Damped(&mut damping)] {
                 let (values, ..) = normal.descend(&at, shorter, before, cost).unwrap();
                 assert!((0..2).all(|k| (values[k] - wanted[k]).abs() < 1e-6), "{values:?}");
             }
@@ -153,13 +153,30 @@ mod tests {
         let matrix = DMatrix::from_element(1, 1, 1.0);
         let normal = Normal { matrix: &matrix, downhill: vec![1.0], ridge: vec![0.0], within: &[] };
         let at = [Bounded { value: 0.0, low: -1.0, high: 1.0 }];
-        for (least, looks) in [(0.9, HALVINGS), (1.1, 0)] {
+        // The third try expects 1 / 1.001, the fourth 1 / 1.1.
+        for (least, looks) in [(0.0, SELDOM.len()), (0.95, 3), (1.1, 0)] {
             let mut looked = 0;
-            let found = normal.descend(&at, Shorter::Halved(least), 1.0, |_| {
+            let found = normal.descend(&at, Shorter::Seldom(least), 1.0, |_| {
                 looked += 1;
                 (2.0, ())
             });
             assert_eq!((found, looked), (None, looks));
         }
+    }
+
+    /// Two numbers that stand in for one another, whose sum alone is told, on a curve: the step that the sum asks for is
+    /// taken though the whole step is far off where the line is none.
+    #[test]
+    fn what_hardly_anything_tells_is_given_up_before_what_is_told() {
+        let (sum, apart) = (1.0, 1e-6);
+        let matrix = DMatrix::from_row_slice(2, 2, &[sum + apart, sum - apart, sum - apart, sum + apart]);
+        // Downhill along both by 0.1, and along their difference by a little, which asks for a step of 50.
+        let normal =
+            Normal { matrix: &matrix, downhill: vec![0.1 + 1e-4, 0.1 - 1e-4], ridge: vec![0.0; 2], within: &[] };
+        let at = [Bounded { value: 0.0, low: -99.0, high: 99.0 }; 2];
+        let cost = |v: &[f64]| ((v[0] + v[1] - 0.1).powi(2) + (v[0] - v[1]).powi(4), ());
+        let before = cost(&[0.0; 2]).0;
+        let (values, now, ()) = normal.descend(&at, Shorter::Seldom(0.0), before, cost).unwrap();
+        assert!(now < 0.2 * before, "{now} at {values:?}");
     }
 }

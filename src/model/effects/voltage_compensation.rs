@@ -12,7 +12,8 @@ impl Effect for VoltageCompensation {
         sentence: "the same stick gives the same thrust late in the pack, because the flight controller makes up for \
             the voltage",
         kind: EffectKind::Thrust,
-        parameters: &[EffectParameter { name: "share", unit: "1", low: 0.0, high: 1.0, typical: [0.2, 1.0] }],
+        // All of it, 1, is what controllers aim at: no end of the range.
+        parameters: &[EffectParameter { name: "share", unit: "1", low: 0.0, high: 1.2, typical: [0.2, 1.0] }],
         writes: &[Quantity::SpecificForce],
         channels: &[ResidualChannel::Force],
         absorbed_by: &[CompactNumber::Thrust],

@@ -45,3 +45,45 @@ fn rename(change: &mut Change, stamped: &'static Card, delayed: &'static Card, e
     change.members.splice(0..0, members.iter().map(|card| card.id));
     change.status = if change.members.len() > 1 { Status::NamedSet } else { Status::Named };
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::insight::diagnose::finding::Value;
+    use std::collections::BTreeMap;
+
+    /// A delay of all commands by 20 ms, with a rival of it.
+    fn delay(delayed: &Card) -> Change {
+        let size = BTreeMap::from([("delay".to_string(), Value::measured(0.02, 1e-3, "s"))]);
+        Change {
+            cause: delayed.id,
+            name: delayed.name,
+            status: Status::NamedSet,
+            members: vec![delayed.id, "rival"],
+            sentence: delayed.sentence,
+            before: BTreeMap::new(),
+            after: size.clone(),
+            difference: size,
+            deviations: 9.0,
+            impact: None,
+            why: None,
+        }
+    }
+
+    #[test]
+    fn the_odometry_tells_late_stamps_from_late_commands() {
+        let (stamped, delayed) = effects::twins(Evidence::OdometryClock).next().expect("twins");
+        let told = |early_s: f64| {
+            let mut change = delay(delayed);
+            rename(&mut change, stamped, delayed, early_s);
+            (change.name, change.members)
+        };
+        assert_eq!(told(0.002), (delayed.name, vec![delayed.id, "rival"]), "on time: late commands");
+        assert_eq!(told(0.018), (stamped.name, vec![stamped.id, "rival"]), "early by as much: late stamps");
+        assert_eq!(told(0.01), (delayed.name, vec![delayed.id, stamped.id, "rival"]), "early by half: either");
+        let mut alone = delay(delayed);
+        alone.members.truncate(1);
+        rename(&mut alone, stamped, delayed, 0.02);
+        assert_eq!((alone.cause, alone.status), (stamped.id, Status::Named));
+    }
+}
