@@ -4,15 +4,15 @@ use super::{CommandEnd, tell};
 use crate::base::error::Error;
 use crate::base::fsio::{new_folder, write_new};
 use crate::present::report::folder::draw;
-use crate::present::run::free;
+use crate::present::run::{folder, free};
 use std::path::PathBuf;
 
 /// Draw the figures of a run or of a study, and one page with all of them
 #[derive(Debug, clap::Args)]
 #[command(after_help = HELP)]
 pub struct Args {
-    /// The folder of a run or of a study
-    #[arg(value_name = "RUN|STUDY")]
+    /// The folder of a run or of a study, or `latest` for the youngest run below runs/
+    #[arg(value_name = "RUN|STUDY|latest")]
     folder: PathBuf,
     /// Of a run: another one, whose commands are drawn beside
     #[arg(long, value_name = "RUN")]
@@ -28,6 +28,7 @@ is drawn as far as it is. The policy of a run is flown again: its lap from above
 vehicles fly from the nominal one.
 
 Examples:
+  racer report latest
   racer report runs/cpu_configurations
   racer report runs/weak --beside runs/strong";
 
@@ -36,8 +37,9 @@ const PAGE: &str = "report.html";
 
 /// Draws what the folder holds and writes it.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
-    let drawn = draw(&args.folder, args.beside.as_deref())?;
-    let out = args.out.clone().unwrap_or_else(|| free(&args.folder.join("report")));
+    let of = folder(&args.folder)?;
+    let drawn = draw(&of, args.beside.as_deref().map(folder).transpose()?.as_deref())?;
+    let out = args.out.clone().unwrap_or_else(|| free(&of.join("report")));
     new_folder(&out)?;
     let write = |name: &str, text: &str| {
         let path = out.join(name);

@@ -6,7 +6,7 @@ use super::{CommandEnd, interrupt, tell};
 use crate::base::check::BadInput;
 use crate::base::lane::bf16::Bf16Unit;
 use crate::learn::ppo::config::ProductPrecision;
-use crate::present::run::Run;
+use crate::present::run::{Run, folder};
 use crate::present::train::{Ended, make, resume, room};
 use crate::race::config::{DEFAULT, Setting, Setup};
 use std::path::{Path, PathBuf};
@@ -42,8 +42,9 @@ pub struct Args {
     /// New folder for the run [default: one below runs/, named by time and track]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Go on with a training that was stopped or killed, from its last checkpoint, as if it had never stopped
-    #[arg(long, value_name = "RUN", conflicts_with_all = OTHERS)]
+    /// Go on with a training that was stopped or killed, from its last checkpoint, as if it had never stopped;
+    /// `latest` is the youngest run below runs/
+    #[arg(long, value_name = "RUN|latest", conflicts_with_all = OTHERS)]
     resume: Option<PathBuf>,
     /// End at once, without saving, when standard input ends: how a study takes its trainings along
     #[arg(long, hide = true)]
@@ -83,8 +84,8 @@ impl Args {
 
 /// Trains, saves, evaluates.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
-    if let Some(folder) = &args.resume {
-        return go_on(args, folder);
+    if let Some(of) = &args.resume {
+        return go_on(args, &folder(of)?);
     }
     let setup = Setup::load(&args.config, &args.settings()?)?;
     room::check(&setup)?;

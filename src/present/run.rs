@@ -25,7 +25,7 @@ pub mod resolved;
 pub mod tensorboard;
 
 pub use crate::base::fsio::free;
-pub use find::{FoundPolicy, find};
+pub use find::{FoundPolicy, find, folder};
 
 use crate::base::check::BadInput;
 use crate::base::error::{Error, Result};
@@ -35,6 +35,8 @@ use std::time::SystemTime;
 
 /// Folder that run folders are made in.
 pub const RUNS: &str = "runs";
+/// What a run was configured with, in a run folder.
+pub const CONFIG: &str = "config.toml";
 /// The best policy, in a run folder.
 pub const POLICY: &str = "policy.safetensors";
 /// Folder of the policies on the way, in a run folder.
