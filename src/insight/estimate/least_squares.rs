@@ -164,8 +164,8 @@ mod tests {
         }
     }
 
-    /// Two numbers that stand in for one another, whose sum alone is told, on a curve: the step that the sum asks for is
-    /// taken though the whole step is far off where the line is none.
+    /// Of two numbers that stand in for one another the sum alone is told: the step that it asks for is taken, though
+    /// the whole step goes far off, to where the line is none.
     #[test]
     fn what_hardly_anything_tells_is_given_up_before_what_is_told() {
         let (sum, apart) = (1.0, 1e-6);
