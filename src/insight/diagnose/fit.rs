@@ -199,7 +199,9 @@ fn descend(
         (point.total() + penalty(problem, free, &point.x), point)
     };
     let before = before + penalty(problem, free, x);
-    normal.descend(&at, Shorter::Seldom(least), before, squares).map(|(_, _, point)| point)
+    // Differences of two sets stand in for one another, and for what both have.
+    let shorter = if problem.contrast.is_some() { Shorter::Seldom(least) } else { Shorter::Halved(least) };
+    normal.descend(&at, shorter, before, squares).map(|(_, _, point)| point)
 }
 
 /// Fits `point` with the numbers `own` beside its own, from `x`; the derivatives of the point's own numbers are taken

@@ -213,9 +213,12 @@ impl<'a> Search<'a> {
         true
     }
 
-    /// Without rivals of `new` that end at a bound beside it: it has taken their place. They are candidates again.
+    /// Without rivals of `new` that end at a bound beside it: it has taken their place. They are candidates again. Of
+    /// one set of flights they stay, and are suspected; between sets they would take the certainty from what differs.
     fn without_displaced(&mut self, point: FitPoint, new: &Card) -> FitPoint {
-        let displaced = |card: &Card| are_rivals(card, new) && is_bounded(self.problem, card, &point.x);
+        let displaced = |card: &Card| {
+            self.problem.contrast.is_some() && are_rivals(card, new) && is_bounded(self.problem, card, &point.x)
+        };
         let gone: Vec<&'static Card> = self.held().into_iter().filter(|card| displaced(card)).collect();
         if gone.is_empty() {
             return point;

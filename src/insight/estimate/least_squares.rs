@@ -29,14 +29,19 @@ pub enum Shorter<'a> {
     /// Levenberg and Marquardt: by more weight on the diagonal, remembered from one step to the next. It bends toward
     /// the steepest way down, which costs a new solution each time: for few numbers far from the minimum.
     Damped(&'a mut f64),
-    /// The same in few tries, forgotten: for steps whose squares cost a prediction of whole flights. A way that hardly
-    /// anything tells, where numbers stand in for one another, is given up first. No step at all where one is expected
-    /// to lower the squares by less than so much.
+    /// By half, down to a sixteenth: for steps whose squares cost a prediction of whole flights. No step at all where
+    /// one is expected to lower them by less than so much.
+    Halved(f64),
+    /// Damped in as few tries, for such steps of numbers that stand in for one another: a way that hardly anything
+    /// tells is given up first, where half of it would still be too far. No step at all as there.
     Seldom(f64),
 }
 
 /// Damping beyond which no step is left, and the least that is kept.
 const DAMPING: [f64; 2] = [1e-9, 100.0];
+
+/// Times that a step is halved and tried.
+const HALVINGS: i32 = 5;
 
 /// Damping of the few tries: none; what leaves a step but for what hardly anything tells; and what shortens all of it.
 const SELDOM: [f64; 6] = [0.0, 1e-5, 1e-3, 0.1, 1.0, 15.0];
@@ -101,21 +106,26 @@ impl Normal<'_> {
         before: f64,
         mut squares: impl FnMut(&[f64]) -> (f64, T),
     ) -> Option<(Vec<f64>, f64, T)> {
-        let mut lower = |step: &[f64]| {
-            let moved = |(n, by): (&Bounded, &f64)| (n.value + by).clamp(n.low, n.high);
+        let mut lower = |step: &[f64], share: f64| {
+            let moved = |(n, by): (&Bounded, &f64)| (n.value + share * by).clamp(n.low, n.high);
             let values: Vec<f64> = at.iter().zip(step).map(moved).collect();
             let (now, rest) = squares(&values);
             (now < before).then_some((values, now, rest))
         };
+        let expected = |step: &[f64]| step.iter().zip(&self.downhill).map(|(by, down)| by * down).sum::<f64>();
         match shorter {
+            Shorter::Halved(least) => {
+                let step = self.step(at, 0.0)?;
+                let times = if expected(&step) < least { 0 } else { HALVINGS };
+                (0..times).find_map(|halvings| lower(&step, 0.5f64.powi(halvings)))
+            }
             Shorter::Seldom(least) => {
-                let expected = |step: &[f64]| step.iter().zip(&self.downhill).map(|(by, down)| by * down).sum::<f64>();
                 let steps = SELDOM.iter().map_while(|damping| self.step(at, *damping));
-                steps.take_while(|step| expected(step) >= least).find_map(|step| lower(&step))
+                steps.take_while(|step| expected(step) >= least).find_map(|step| lower(&step, 1.0))
             }
             Shorter::Damped(damping) => {
                 while *damping < DAMPING[1] {
-                    if let Some(found) = self.step(at, *damping).and_then(|step| lower(&step)) {
+                    if let Some(found) = self.step(at, *damping).and_then(|step| lower(&step, 1.0)) {
                         *damping = (*damping * 0.1).max(DAMPING[0]);
                         return Some(found);
                     }
@@ -141,7 +151,7 @@ mod tests {
             let normal = Normal { matrix: &matrix, downhill: vec![5.0 - y, 4.0 - y], ridge: vec![0.0; 2], within: &[] };
             let before = cost(&[0.0, y]).0;
             let mut damping = 1e-9;
-            for shorter in [Shorter::Seldom(0.0), Shorter::Damped(&mut damping)] {
+            for shorter in [Shorter::Halved(0.0), Shorter::Seldom(0.0), Shorter::Damped(&mut damping)] {
                 let (values, ..) = normal.descend(&at, shorter, before, cost).unwrap();
                 assert!((0..2).all(|k| (values[k] - wanted[k]).abs() < 1e-6), "{values:?}");
             }
