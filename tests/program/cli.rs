@@ -137,6 +137,10 @@ fn latest_is_the_youngest_run() {
     assert!(run.to_str().unwrap().ends_with("Z-square"), "{}", run.display());
     assert_eq!(racer(folder.path(), &["eval", "latest", "--agents", "3"]).code, 0);
     assert!(run.join("evaluation-both-3.json").is_file());
+    assert_eq!(racer(folder.path(), &["report", "latest"]).code, 0);
+    assert!(run.join("report/report.html").is_file());
+    let finished = racer(folder.path(), &["train", "--resume", "latest"]);
+    assert!(finished.code == 0 && finished.err.contains("is finished"), "{}", finished.err);
 }
 
 #[test]

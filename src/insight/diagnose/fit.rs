@@ -92,6 +92,17 @@ pub fn fit(problem: &Problem, whitener: &Whitener, x: &[f64], free: &[usize]) ->
     descended(problem, whitener, stay(problem, whitener, x, free))
 }
 
+/// Fits the numbers of `point` but those `dropped`, which are as the base vehicle has them.
+pub fn fit_without(problem: &Problem, whitener: &Whitener, point: &FitPoint, dropped: &[usize]) -> FitPoint {
+    if dropped.is_empty() {
+        return point.clone();
+    }
+    let mut x = point.x.clone();
+    dropped.iter().for_each(|&k| x[k] = problem.model.base[k]);
+    let free: Vec<usize> = point.free.iter().copied().filter(|k| !dropped.contains(k)).collect();
+    fit(problem, whitener, &x, &free)
+}
+
 /// Fits the numbers of `point` once more, by another whitener.
 pub fn again(problem: &Problem, whitener: &Whitener, point: &FitPoint) -> FitPoint {
     descended(problem, whitener, stay_again(problem, whitener, point))

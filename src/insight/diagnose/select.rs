@@ -74,10 +74,7 @@ impl Selection {
     fn less(&self, problem: &Problem, ids: &[&str], mut dropped: Vec<usize>) -> Self {
         let gone = |a: &Added| ids.contains(&a.card.id);
         dropped.extend(self.added.iter().filter(|a| gone(a)).flat_map(|a| span(a.card)));
-        let mut x = self.point.x.clone();
-        dropped.iter().for_each(|&k| x[k] = problem.model.base[k]);
-        let free: Vec<usize> = self.point.free.iter().copied().filter(|k| !dropped.contains(k)).collect();
-        let point = if dropped.is_empty() { self.point.clone() } else { fit::fit(problem, &self.whitener, &x, &free) };
+        let point = fit::fit_without(problem, &self.whitener, &self.point, &dropped);
         Self {
             point,
             whitener: self.whitener.clone(),
@@ -225,10 +222,7 @@ impl<'a> Search<'a> {
         }
         self.added.retain(|a| !gone.iter().any(|card| card.id == a.card.id));
         let numbers: Vec<usize> = gone.iter().flat_map(|card| span(card)).collect();
-        let mut x = point.x;
-        numbers.iter().for_each(|&k| x[k] = self.problem.model.base[k]);
-        let free: Vec<usize> = point.free.iter().copied().filter(|k| !numbers.contains(k)).collect();
-        let point = fit::fit(self.problem, &self.whitener, &x, &free);
+        let point = fit::fit_without(self.problem, &self.whitener, &point, &numbers);
         self.found.extend(candidates(self.problem, &self.whitener, &point, &gone));
         point
     }

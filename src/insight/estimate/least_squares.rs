@@ -163,15 +163,18 @@ mod tests {
         let matrix = DMatrix::from_element(1, 1, 1.0);
         let normal = Normal { matrix: &matrix, downhill: vec![1.0], ridge: vec![0.0], within: &[] };
         let at = [Bounded { value: 0.0, low: -1.0, high: 1.0 }];
-        // The third try expects 1 / 1.001, the fourth 1 / 1.1.
-        for (least, looks) in [(0.0, SELDOM.len()), (0.95, 3), (1.1, 0)] {
-            let mut looked = 0;
-            let found = normal.descend(&at, Shorter::Seldom(least), 1.0, |_| {
+        let looks = |shorter: Shorter| {
+            let mut looked = 0_usize;
+            let found = normal.descend(&at, shorter, 1.0, |_| {
                 looked += 1;
                 (2.0, ())
             });
-            assert_eq!((found, looked), (None, looks));
-        }
+            assert_eq!(found, None);
+            looked
+        };
+        assert_eq!([0.9, 1.1].map(|least| looks(Shorter::Halved(least))), [HALVINGS as usize, 0]);
+        // The third try expects 1 / 1.001, the fourth 1 / 1.1.
+        assert_eq!([0.0, 0.95, 1.1].map(|least| looks(Shorter::Seldom(least))), [SELDOM.len(), 3, 0]);
     }
 
     /// Of two numbers that stand in for one another the sum alone is told: the step that it asks for is taken, though

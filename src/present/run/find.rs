@@ -63,7 +63,7 @@ fn latest(runs: &Path, will_do: impl Fn(&Path) -> bool, called: &str) -> Result<
     let found = entries(runs).into_iter().filter(|run| run.join(CONFIG).is_file() && will_do(run)).max_by_key(age);
     found.ok_or_else(|| {
         let found = format!("no run {called} below {}/", runs.display());
-        BadInput::new(LATEST, found, EXPECTED, "name the run folder, or train first")
+        BadInput::new(LATEST, found, "at least one", "name the run folder, or train first")
     })
 }
 

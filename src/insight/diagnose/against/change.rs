@@ -95,3 +95,24 @@ impl Changes {
         if names.is_empty() { "nothing changed beyond chance".into() } else { format!("changed: {}", names.join(", ")) }
     }
 }
+
+#[cfg(test)]
+impl Change {
+    /// One that is named alone, of this difference.
+    pub fn sample(cause: &'static str, difference: f64, unit: &str) -> Self {
+        let size = BTreeMap::from([("size".to_string(), Value::measured(difference, 1e-6, unit))]);
+        Change {
+            cause,
+            name: cause,
+            status: Status::Named,
+            members: vec![cause],
+            sentence: "",
+            before: size.clone(),
+            after: size.clone(),
+            difference: size,
+            deviations: 9.0,
+            impact: None,
+            why: None,
+        }
+    }
+}

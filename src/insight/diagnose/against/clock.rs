@@ -33,37 +33,19 @@ fn doubt_over(flight_s: f64, changes: &mut [Change]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeMap;
-
-    fn change(cause: &'static str, difference: f64, unit: &str) -> Change {
-        let size = BTreeMap::from([("size".to_string(), Value::measured(difference, 1e-6, unit))]);
-        Change {
-            cause,
-            name: cause,
-            status: Status::Named,
-            members: vec![cause],
-            sentence: "",
-            before: size.clone(),
-            after: size.clone(),
-            difference: size,
-            deviations: 9.0,
-            impact: None,
-            why: None,
-        }
-    }
 
     #[test]
     fn small_delays_beside_another_clock_are_its() {
         let stay = |delay_s: f64, skew: f64| {
             let clock = effects::cards().find(|card| card.role == Role::ClockFast).expect("a clock");
-            let mut changes = [change("delay", delay_s, "s"), change(clock.id, skew, "1")];
+            let mut changes = [Change::sample("delay", delay_s, "s"), Change::sample(clock.id, skew, "1")];
             doubt_over(300.0, &mut changes);
             assert_eq!(changes[1].status, Status::Named);
             changes[0].status == Status::Named
         };
         assert!(!stay(-0.008, 6e-4), "8 ms of 180");
         assert!(stay(0.03, 6e-4) && stay(0.008, 1e-4), "more than an uneven clock does");
-        let mut alone = [change("delay", 0.008, "s"), change("drag", 6e-4, "1")];
+        let mut alone = [Change::sample("delay", 0.008, "s"), Change::sample("drag", 6e-4, "1")];
         doubt_over(300.0, &mut alone);
         assert_eq!(alone[0].status, Status::Named, "no clock");
     }

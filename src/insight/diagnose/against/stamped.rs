@@ -49,25 +49,12 @@ fn rename(change: &mut Change, stamped: &'static Card, delayed: &'static Card, e
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::insight::diagnose::finding::Value;
-    use std::collections::BTreeMap;
 
     /// A delay of all commands by 20 ms, with a rival of it.
     fn delay(delayed: &Card) -> Change {
-        let size = BTreeMap::from([("delay".to_string(), Value::measured(0.02, 1e-3, "s"))]);
-        Change {
-            cause: delayed.id,
-            name: delayed.name,
-            status: Status::NamedSet,
-            members: vec![delayed.id, "rival"],
-            sentence: delayed.sentence,
-            before: BTreeMap::new(),
-            after: size.clone(),
-            difference: size,
-            deviations: 9.0,
-            impact: None,
-            why: None,
-        }
+        let status = Status::NamedSet;
+        let members = vec![delayed.id, "rival"];
+        Change { name: delayed.name, status, members, ..Change::sample(delayed.id, 0.02, "s") }
     }
 
     #[test]
