@@ -23,35 +23,20 @@ RUNS = ROOT / "runs"
 
 BENCH = "cargo bench --bench hidden_effects --"
 LOOP = "python3 tests/python/firmware_loop.py target/release/racer"
+# Pairs of flights: seed, how many, s each, about how long.
+PAIRS = [(13, 100, 60, "1.5 h"), (14, 100, 120, "2 h"), (16, 40, 60, "0.5 h"),
+         *((seed, 100, 60, "1 h") for seed in (18, 20, 21, 22, 23)), (24, 100, 300, "4 h"), (26, 60, 60, "1 h"),
+         (27, 100, 300, "6 h")]
 # Name: needs, about how long, and the command; a list of trainings is a command of its own.
 COMMANDS = {
-    "against": ([], "1.5 h", f"{BENCH} --against --n 100 --seconds 60 --seed 13 --jobs 2 --csv results/against.csv"),
-    "against-120s": ([], "2 h", f"{BENCH} --against --n 100 --seconds 120 --seed 14 --jobs 2 "
-                     "--csv results/against-120s.csv"),
-    "against-seed15": ([], "1.5 h", f"{BENCH} --against --n 100 --seconds 60 --seed 15 --jobs 2 "
-                       "--csv results/against-seed15.csv"),
-    "against-seed18": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 18 --jobs 2 "
-                       "--csv results/against-seed18.csv"),
-    "against-seed20": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 20 --jobs 2 "
-                       "--csv results/against-seed20.csv"),
-    "against-seed21": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 21 --jobs 2 "
-                       "--csv results/against-seed21.csv"),
-    "against-seed22": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 22 --jobs 2 "
-                       "--csv results/against-seed22.csv"),
-    "against-seed23": ([], "1 h", f"{BENCH} --against --n 100 --seconds 60 --seed 23 --jobs 2 "
-                       "--csv results/against-seed23.csv"),
-    "against-seed26": ([], "1 h", f"{BENCH} --against --n 60 --seconds 60 --seed 26 --jobs 2 "
-                       "--csv results/against-seed26.csv"),
+    **{f"against-seed{seed}": ([], about, f"{BENCH} --against --n {n} --seconds {length} --seed {seed} --jobs 2 "
+                               f"--csv results/against-seed{seed}.csv") for seed, n, length, about in PAIRS},
     "against-voltage": ([], "0.2 h", f"{BENCH} --against --n 8 --seconds 60 --seed 44 --jobs 2 --only esc_voltage "
                         "--csv results/against-voltage.csv"),
-    "against-300s": ([], "4 h", f"{BENCH} --against --n 100 --seconds 300 --seed 24 --jobs 2 "
-                     "--csv results/against-300s.csv"),
     "against-by-motors": ([], "10 min", " && ".join(
         f"{BENCH} --against --by-motors --seconds 60 --jobs 2 --csv results/against-by-motors.csv {pairs}"
         for pairs in ["--seed 37 --n 1000", "--seed 33 --n 1000", "--seed 30 --n 200", "--seed 31 --n 12 --only imu_late",
                       "--seed 32 --n 12 --only gyro_filter"])),
-    "against-seed16": ([], "0.5 h", f"{BENCH} --against --n 40 --seconds 60 --seed 16 --jobs 2 "
-                       "--csv results/against-seed16.csv"),
     "measured": (["logs"], "5 min", "python3 tests/python/measured_flights.py target/release/racer {logs} "
                  "results/measured-flights.csv"),
     "plan": ([], "4 h", f"{BENCH} --plan --n 130 --seed 4 --jobs 2 --csv results/plan.csv"),

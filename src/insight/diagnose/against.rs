@@ -15,6 +15,7 @@ mod judge;
 mod motor;
 mod part;
 mod search;
+mod shaken;
 mod sizes;
 mod stamped;
 mod suspect;
@@ -106,6 +107,7 @@ fn changes(
     }
     clock::doubt(problem, &mut changes);
     stamped::tell(problem, x, &mut changes);
+    shaken::tell(&mut changes);
     // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first, the
     // surest of it before all, told from all others or not.
     let own = [Role::ConstantError, Role::ClockFast];

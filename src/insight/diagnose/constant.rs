@@ -26,8 +26,7 @@ pub fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
 }
 
 /// Rivals of a constant error that explain the flights as well in its place: a flight at one throttle does not tell
-/// what goes with the throttle from what is always there. How a vibration goes with it is each vehicle's own, so that
-/// an error along the thrust alone may always be one.
+/// what goes with the throttle from what is always there. A vibration may always be one of them.
 fn taken_for(fitted: &FittedSelection, card: &Card) -> Vec<&'static Card> {
     let (problem, point) = (fitted.problem, fitted.point());
     let rivals = card.rivals.iter().filter_map(|id| effects::card(id)).filter(|rival| rival.writes == card.writes);
@@ -40,10 +39,16 @@ fn taken_for(fitted: &FittedSelection, card: &Card) -> Vec<&'static Card> {
         let worse: Vec<f64> = other.cost.iter().zip(&point.cost).map(|(a, b)| a - b).collect();
         deviations(&worse) < TIE_DEVIATIONS.get()
     };
-    let along_thrust = {
-        let [x, y, z] = [0, 1, 2].map(|i| point.x[span(card).start + i].abs());
-        x.hypot(y) < ACROSS_SHARE.get() * z
-    };
-    let shakes = |rival: &&'static Card| along_thrust && rival.reads.contains(&Quantity::ThrustCommand);
+    let off = [0, 1, 2].map(|i| point.x[span(card).start + i]);
+    let shakes = |rival: &&'static Card| shaking(card, off).any(|shakes| shakes.id == rival.id);
     new.filter(|rival| shakes(rival) || as_good(rival)).collect()
+}
+
+/// Rivals of a constant error that is `off` on each axis, which go with the throttle: how a vibration does is each
+/// vehicle's own, so that an error along the thrust alone may be one.
+pub fn shaking(card: &Card, off: [f64; 3]) -> impl Iterator<Item = &'static Card> {
+    let [x, y, z] = off;
+    let along_thrust = x.hypot(y) < ACROSS_SHARE.get() * z.abs();
+    let rivals = card.rivals.iter().filter_map(|id| effects::card(id)).filter(|rival| rival.writes == card.writes);
+    rivals.filter(move |rival| along_thrust && rival.reads.contains(&Quantity::ThrustCommand))
 }

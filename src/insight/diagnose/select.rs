@@ -210,13 +210,15 @@ impl<'a> Search<'a> {
         true
     }
 
-    /// Without rivals of `new` that end at a bound beside it: it has taken their place. They are candidates again. Of
-    /// one set of flights they stay, and are suspected; between sets they would take the certainty from what differs.
+    /// Without what ends at a bound beside a rival, now that `new` is there: that one has taken its place. It is a
+    /// candidate again. Of one set of flights it stays, and is suspected; between sets it would take the certainty from
+    /// what differs.
     fn without_displaced(&mut self, point: FitPoint, new: &Card) -> FitPoint {
-        let displaced = |card: &Card| {
-            self.problem.contrast.is_some() && are_rivals(card, new) && is_bounded(self.problem, card, &point.x)
-        };
-        let gone: Vec<&'static Card> = self.held().into_iter().filter(|card| displaced(card)).collect();
+        let (problem, held) = (self.problem, self.held());
+        let rivalled = |card: &Card| held.iter().any(|h| are_rivals(card, h));
+        let old = held.iter().copied().filter(|card| problem.contrast.is_some() && card.id != new.id);
+        let gone: Vec<&'static Card> =
+            old.filter(|card| rivalled(card) && is_bounded(problem, card, &point.x)).collect();
         if gone.is_empty() {
             return point;
         }
