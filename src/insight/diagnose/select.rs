@@ -210,15 +210,14 @@ impl<'a> Search<'a> {
         true
     }
 
-    /// Without what ends at a bound beside a rival, now that `new` is there: that one has taken its place. It is a
-    /// candidate again. Of one set of flights it stays, and is suspected; between sets it would take the certainty from
-    /// what differs.
+    /// Without what ends at a bound beside a rival, now that `new` is there: the rival has taken its place, and it would
+    /// only take the certainty from the others. It is a candidate again.
     fn without_displaced(&mut self, point: FitPoint, new: &Card) -> FitPoint {
-        let (problem, held) = (self.problem, self.held());
-        let rivalled = |card: &Card| held.iter().any(|h| are_rivals(card, h));
-        let old = held.iter().copied().filter(|card| problem.contrast.is_some() && card.id != new.id);
-        let gone: Vec<&'static Card> =
-            old.filter(|card| rivalled(card) && is_bounded(problem, card, &point.x)).collect();
+        let held = self.held();
+        let displaced = |card: &Card| {
+            card.id != new.id && held.iter().any(|h| are_rivals(card, h)) && is_bounded(self.problem, card, &point.x)
+        };
+        let gone: Vec<&'static Card> = held.iter().copied().filter(|card| displaced(card)).collect();
         if gone.is_empty() {
             return point;
         }
