@@ -123,7 +123,8 @@ fn said_of(log: [u64; 2], noise: f64, imu_hz: f64, cause: (&str, f64)) -> Diagno
 }
 
 /// Rule 8: a few seconds with motors at their limits make no response worse that all others know. The pitch loop was
-/// made slower by them, and predicted another flight of the vehicle 24 % worse.
+/// made slower by them, and predicted another flight of the vehicle 24 % worse. And what ended at its bound beside a
+/// rival took the certainty from the limit and the delay of the rates, with which all of them are better.
 #[test]
 fn a_few_stretches_do_not_speak_for_all_others() {
     let log = |another| other_flight([27, 37], 0.7522, 250.0, ("esc_voltage", 0.5786), another);
@@ -134,7 +135,7 @@ fn a_few_stretches_do_not_speak_for_all_others() {
     for name in ["roll rate", "pitch rate", "yaw rate"] {
         let channel = prediction.channels.iter().find(|c| c.name == name).unwrap();
         let [base, extended] = [0, 1].map(|vehicle| channel.score(vehicle).rmse);
-        assert!(extended < 1.02 * base, "{name}: {extended} rad/s, the base {base}");
+        assert!(extended < 0.6 * base, "{name}: {extended} rad/s, the base {base}");
     }
 }
 

@@ -210,8 +210,8 @@ impl<'a> Search<'a> {
         true
     }
 
-    /// Without what ends at a bound beside a rival, now that `new` is there: the rival has taken its place, and it would
-    /// only take the certainty from the others. It is a candidate again.
+    /// Without what ends at a bound beside a rival, now that `new` is there: the rival has taken its place, and it
+    /// would only take the certainty from the others. It is a candidate again.
     fn without_displaced(&mut self, point: FitPoint, new: &Card) -> FitPoint {
         let held = self.held();
         let displaced = |card: &Card| {
