@@ -29,8 +29,7 @@ pub fn constant_errors(fitted: &FittedSelection) -> Vec<Judged> {
 /// what goes with the throttle from what is always there. A vibration may always be one of them.
 fn taken_for(fitted: &FittedSelection, card: &Card) -> Vec<&'static Card> {
     let (problem, point) = (fitted.problem, fitted.point());
-    let rivals = card.rivals.iter().filter_map(|id| effects::card(id)).filter(|rival| rival.writes == card.writes);
-    let new = rivals.filter(|rival| fitted.places(rival).is_empty());
+    let new = alike(card).filter(|rival| fitted.places(rival).is_empty());
     let as_good = |rival: &&'static Card| {
         let mut x = point.x.clone();
         span(card).for_each(|k| x[k] = problem.model.base[k]);
@@ -49,6 +48,10 @@ fn taken_for(fitted: &FittedSelection, card: &Card) -> Vec<&'static Card> {
 pub fn shaking(card: &Card, off: [f64; 3]) -> impl Iterator<Item = &'static Card> {
     let [x, y, z] = off;
     let along_thrust = x.hypot(y) < ACROSS_SHARE.get() * z.abs();
-    let rivals = card.rivals.iter().filter_map(|id| effects::card(id)).filter(|rival| rival.writes == card.writes);
-    rivals.filter(move |rival| along_thrust && rival.reads.contains(&Quantity::ThrustCommand))
+    alike(card).filter(move |rival| along_thrust && rival.reads.contains(&Quantity::ThrustCommand))
+}
+
+/// Rivals of `card` that change what it changes.
+fn alike(card: &Card) -> impl Iterator<Item = &'static Card> {
+    card.rivals.iter().filter_map(|id| effects::card(id)).filter(|rival| rival.writes == card.writes)
 }
