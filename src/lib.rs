@@ -63,7 +63,8 @@ pub use base::error::{Error, Result};
 pub use flight::Log;
 pub use flight::sensors::SensorConfig;
 pub use insight::diagnose::Diagnosed;
-pub use insight::diagnose::finding::{Diagnosis, Status, Verdict};
+pub use insight::diagnose::judgement::diagnosis::{Diagnosis, Verdict};
+pub use insight::diagnose::judgement::finding::Status;
 pub use insight::identify::IdentifyOptions;
 pub use insight::identify::estimate::Estimated;
 pub use insight::identify::result::Identification;
@@ -112,14 +113,13 @@ pub mod identification {
 
 /// The parts of a prediction.
 pub mod prediction {
-    pub use crate::insight::diagnose::horizon::Horizon;
+    pub use crate::insight::diagnose::prediction::horizon::Horizon;
     pub use crate::insight::predict::{PredictedChannel, Prediction};
     pub use crate::insight::prepare::data::DataPart;
 }
 
 /// The parts of a diagnosis.
 pub mod diagnosis {
-    pub use crate::insight::diagnose::finding::{
-        Ahead, Detectable, Drift, Finding, Gain, NotDetectable, Residual, Value,
-    };
+    pub use crate::insight::diagnose::judgement::diagnosis::{Ahead, Detectable, Drift, NotDetectable, Residual};
+    pub use crate::insight::diagnose::judgement::finding::{Finding, Gain, Value};
 }

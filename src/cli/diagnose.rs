@@ -11,7 +11,7 @@ use super::{CommandEnd, logs, progress};
 use crate::base::check::{BadInput, Invalid};
 use crate::base::fsio;
 use crate::flight::Options;
-use crate::insight::diagnose::finding::Verdict;
+use crate::insight::diagnose::judgement::diagnosis::Verdict;
 use crate::insight::diagnose::{Diagnosed, diagnose};
 use crate::insight::identify::{self, identify};
 use crate::insight::plan::next_flight;

@@ -78,7 +78,7 @@ struct PredictionDocument<'a> {
     thrust_driven_by: &'a [&'static str],
     logs: Vec<&'a str>,
     channels: Vec<ChannelDocument>,
-    open_loop: &'a [Vec<crate::insight::diagnose::horizon::Horizon>],
+    open_loop: &'a [Vec<crate::insight::diagnose::prediction::horizon::Horizon>],
 }
 
 /// One channel; scores by vehicle.

@@ -1,95 +1,45 @@
 //! What the simulation gets wrong, and why: from the residuals of flights to the effects that explain them.
 //!
-//! Flights are predicted by the simulator's own equations ([`predict`]) and held against the measurement by channel
-//! ([`problem`]). Every effect of the catalogue is a direction in which the prediction could change; a score test ranks
-//! them beside what the compact model's own numbers could take up ([`score`], [`select`]), the best are fitted
-//! ([`fit`]), and what is found has to be evident, replicated, of a size that matters ([`judge`]) and complete: nothing
-//! structured may be left ([`structure`]).
+//! Flights are predicted by the simulator's own equations and held against the measurement by channel
+//! ([`prediction`]). Every effect of the catalogue is a direction in which the prediction could change; a score test
+//! ranks them beside what the compact model's own numbers could take up ([`selection`]), the best are fitted
+//! ([`fitting`]), and what is found has to be evident, replicated, of a size that matters ([`judgement`]) and complete:
+//! nothing structured may be left ([`structure`]). What holds makes the extended vehicle ([`extension`]), whose gain is
+//! measured on flight that no fit has seen ([`gain`]).
 
 // Samples, axes and channels index several arrays at once here.
 #![allow(clippy::needless_range_loop)]
 
-pub mod accident;
-pub mod actuator_response;
-pub mod adequacy;
 pub mod against;
-pub mod agreement;
-pub mod bend;
-pub mod bends;
-pub mod candidates;
-pub mod cause;
-pub mod channels;
-mod constant;
-pub mod contrast;
-pub mod detectable;
-pub mod disambiguate;
-pub mod doubt;
-pub mod drift;
-pub mod extend;
+pub mod extension;
 pub mod figures;
-pub mod finding;
-pub mod findings;
-pub mod fit;
-pub mod fitted;
-pub mod flexible;
-pub mod folds;
-pub mod forms;
+pub mod fitting;
 pub mod gain;
-pub mod gusts;
-pub mod horizon;
-pub mod impact;
-mod imu_seen;
-pub mod judge;
-pub mod keep;
-pub mod kinematics;
-pub mod lost;
-pub mod measured;
-pub mod model;
+pub mod judgement;
 pub mod motor_loop;
-pub mod motors;
-pub mod numbers;
-pub mod one_motor;
-pub mod ordinary;
-pub mod oscillation;
-mod own_numbers;
-pub mod pays;
-pub mod place;
-pub mod predict;
-pub mod problem;
-pub mod rank;
-pub mod record;
-pub mod replication;
-pub mod score;
-pub mod select;
-pub mod set_aside;
-pub mod shown;
-pub mod signals;
-pub mod size;
-pub mod skew;
-pub mod steady_air;
+pub mod prediction;
+pub mod selection;
 pub mod structure;
-pub mod told;
-pub mod trial;
-mod unpaid_forms;
-pub mod unseen;
-pub mod whiten;
-pub mod whole;
-pub mod worse;
 
 use crate::base::stats::mean;
 use crate::insight::Watch;
 use crate::insight::prepare::data::Data;
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
-use channels::NAMES;
-use finding::{Diagnosis, Finding, Residual, Status, Verdict};
-use findings::Judgement;
-use fitted::FittedSelection;
-use judge::Judged;
-use model::Model;
-use problem::Problem;
-use record::FlightRecord;
-use select::Selection;
+use extension::{extend, keep, unpaid_forms};
+use judgement::diagnosis::{Diagnosis, Residual, Verdict};
+use judgement::finding::{Finding, Status};
+use judgement::findings::Judgement;
+use judgement::judge::Judged;
+use judgement::{detectable, doubt, findings, one_motor, set_aside};
+use prediction::channels::NAMES;
+use prediction::model::Model;
+use prediction::motors;
+use prediction::problem::Problem;
+use prediction::record::{self, FlightRecord};
+use selection::Selection;
+use selection::fitted::FittedSelection;
+use selection::{accident, disambiguate, ordinary, whole};
 use std::collections::BTreeMap;
 
 /// Flights and their diagnosis, with all that a report needs.

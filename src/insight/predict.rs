@@ -6,7 +6,7 @@ pub mod drive;
 pub mod signals;
 
 use crate::base::stats::Score;
-use crate::insight::diagnose::horizon::{AT_S, Horizon};
+use crate::insight::diagnose::prediction::horizon::{AT_S, Horizon};
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::model::vehicle::Vehicle;
 use signals::{CHANNELS, NAMES, Signals, UNITS};

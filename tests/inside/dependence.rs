@@ -3,8 +3,8 @@
 
 use crate::truth::Vehicle;
 use crate::truth::hidden::{Setting, Style, fly};
-use racer::insight::diagnose::numbers::span;
-use racer::insight::diagnose::problem::{ChannelValues, Problem};
+use racer::insight::diagnose::prediction::numbers::span;
+use racer::insight::diagnose::prediction::problem::{ChannelValues, Problem};
 use racer::insight::quality::check;
 use racer::model::effects::{self, Card};
 use rayon::prelude::*;

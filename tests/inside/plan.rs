@@ -5,7 +5,7 @@ use crate::truth::effects::Hidden;
 use crate::truth::hidden::{Setting, Style, fly_as};
 use racer::flight::Log;
 use racer::flight::pilot::{Manoeuvre, Pilot};
-use racer::insight::diagnose::finding::{Finding, Status};
+use racer::insight::diagnose::judgement::finding::{Finding, Status};
 use racer::insight::diagnose::{Diagnosed, diagnose};
 use racer::insight::plan::next_flight;
 use racer::insight::quality::check;

@@ -7,7 +7,7 @@ use crate::flight::spans::length;
 use crate::insight::Watch;
 use crate::insight::criteria::flown::LEAST_FLIGHT_S;
 use crate::insight::diagnose::against::{Both, Change, Changes, WouldShow, compare};
-use crate::insight::diagnose::finding::Status;
+use crate::insight::diagnose::judgement::finding::Status;
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
 use crate::present::report::digits;

@@ -1,9 +1,10 @@
 //! A diagnosis as text.
 
 use crate::cli::columns;
-use crate::insight::diagnose::accident::LeftOut;
-use crate::insight::diagnose::finding::{Diagnosis, Finding, Status};
 use crate::insight::diagnose::gain;
+use crate::insight::diagnose::judgement::diagnosis::Diagnosis;
+use crate::insight::diagnose::judgement::finding::{Finding, Status};
+use crate::insight::diagnose::selection::accident::LeftOut;
 use crate::present::report::digits;
 
 /// What is wrong, why, what it is worth, what to fly next.

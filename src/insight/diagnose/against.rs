@@ -1,6 +1,6 @@
 //! What changed between two sets of flights of one vehicle.
 //!
-//! All flights are fitted as one vehicle's, with the effects that they show together ([`super::select`]). Then each
+//! All flights are fitted as one vehicle's, with the effects that they show together ([`super::selection`]). Then each
 //! number of the compact model and each effect may differ between the sets ([`suspect`]); a score test ranks the
 //! differences beside the same cause in both sets ([`columns`]), the best are fitted ([`search`]) and judged
 //! ([`judge`]). What the model gets wrong of both sets alike is no difference.
@@ -21,17 +21,18 @@ mod stamped;
 mod suspect;
 mod would_show;
 
-use super::accident;
-use super::contrast::Contrast;
-use super::finding::{Diagnosis, Status};
-use super::fitted::FittedSelection;
-use super::motor_loop::{MotorLoop, motor_loop, together};
-use super::numbers::DISCHARGE;
-use super::problem::Problem;
-use super::select::Selection;
-use super::shown;
-use super::size::is_material;
 use crate::insight::Watch;
+use crate::insight::diagnose::fitting::size::is_material;
+use crate::insight::diagnose::judgement::diagnosis::Diagnosis;
+use crate::insight::diagnose::judgement::finding::Status;
+use crate::insight::diagnose::judgement::shown;
+use crate::insight::diagnose::motor_loop::{MotorLoop, motor_loop, together};
+use crate::insight::diagnose::prediction::contrast::Contrast;
+use crate::insight::diagnose::prediction::numbers::DISCHARGE;
+use crate::insight::diagnose::prediction::problem::Problem;
+use crate::insight::diagnose::selection::Selection;
+use crate::insight::diagnose::selection::accident;
+use crate::insight::diagnose::selection::fitted::FittedSelection;
 use crate::insight::quality::Quality;
 use crate::model::effects::{self, EffectKind, Role};
 use crate::model::vehicle::Vehicle;

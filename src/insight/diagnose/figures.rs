@@ -5,10 +5,10 @@ pub mod spectrum;
 pub mod windows;
 
 use super::Diagnosed;
-use super::channels::{CHANNELS, NAMES};
-use super::structure::Structure;
 use crate::base::stats::mean;
 use crate::insight::criteria::shown::{FIGURE_FALL, FIGURE_SHARE};
+use crate::insight::diagnose::prediction::channels::{CHANNELS, NAMES};
+use crate::insight::diagnose::structure::Structure;
 use crate::model::effects::Role;
 use profile::Profile;
 use spectrum::Spectra;

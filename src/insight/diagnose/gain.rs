@@ -1,17 +1,19 @@
 //! What the effects are worth on flight that was not used for fitting: the last flight where there are several, else
 //! the last 30 % of the time.
 
-use super::channels::{CHANNELS, NAMES};
-use super::finding::{Ahead, Gain};
-use super::fit::{self, FitPoint};
-use super::flexible;
-use super::horizon;
-use super::numbers::{BEGIN, ModelNumber};
-use super::problem::Problem;
-use super::select::Selection;
-use super::whiten::Whitener;
+pub mod flexible;
+
 use crate::base::stats::mean;
 use crate::insight::criteria::flown::{HELD_OUT_ROWS, WORTH_GAINING};
+use crate::insight::diagnose::fitting::fit::{self, FitPoint};
+use crate::insight::diagnose::fitting::whiten::Whitener;
+use crate::insight::diagnose::judgement::diagnosis::Ahead;
+use crate::insight::diagnose::judgement::finding::Gain;
+use crate::insight::diagnose::prediction::channels::{CHANNELS, NAMES};
+use crate::insight::diagnose::prediction::horizon;
+use crate::insight::diagnose::prediction::numbers::{BEGIN, ModelNumber};
+use crate::insight::diagnose::prediction::problem::Problem;
+use crate::insight::diagnose::selection::Selection;
 use crate::insight::prepare::data::TRAIN_SHARE;
 use std::collections::BTreeMap;
 
@@ -129,7 +131,11 @@ fn horizons(problem: &Problem, base: &FitPoint, extended: &FitPoint, out: &[bool
 
 impl Whitener {
     /// The same, deaf to the stretches of time that are `out`.
-    pub fn without(&self, rows: &[Vec<super::problem::ResidualRow>; CHANNELS], out: &[bool]) -> Self {
+    pub fn without(
+        &self,
+        rows: &[Vec<crate::insight::diagnose::prediction::problem::ResidualRow>; CHANNELS],
+        out: &[bool],
+    ) -> Self {
         let mut copy = self.clone();
         for (c, weights) in copy.weights_mut().iter_mut().enumerate() {
             for (row, weight) in rows[c].iter().zip(weights.iter_mut()) {

@@ -1,15 +1,19 @@
 //! Is anything left? What of a residual an additive model of many signals predicts on stretches of time that it has not
 //! seen, with what that lines up with; and how much of it its own past predicts.
 
-use super::channels::{FORCE, NAMES, RATE, VOLTAGE};
-use super::folds::{FOLDS, fold};
-use super::problem::{ChannelValues, Predictions, Problem};
-use super::signals::signals;
+pub mod folds;
+pub mod oscillation;
+pub mod place;
+
 use crate::base::stats::quantile;
 use crate::insight::criteria::complete::VARIANCE_SHARE;
 use crate::insight::criteria::flown::STRUCTURE_ROWS;
+use crate::insight::diagnose::prediction::channels::{FORCE, NAMES, RATE, VOLTAGE};
+use crate::insight::diagnose::prediction::problem::{ChannelValues, Predictions, Problem};
+use crate::insight::diagnose::prediction::signals::signals;
 use crate::insight::estimate::autoregression::autoregression;
 use crate::insight::estimate::robust::capped;
+use folds::{FOLDS, fold};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -57,10 +61,10 @@ pub fn search(problem: &Problem, state: &Predictions, residual: &ChannelValues) 
     let mut belongs = |c: usize, share: f64, along: &'static str| {
         found.iter_mut().filter(|s| s.channel == NAMES[c].0).for_each(|s| s.belongs(share, along));
     };
-    if let Some(share) = super::place::share(problem, residual) {
+    if let Some(share) = place::share(problem, residual) {
         [FORCE, FORCE + 1].into_iter().for_each(|c| belongs(c, share, PLACE));
     }
-    for swing in super::oscillation::find(problem, residual) {
+    for swing in oscillation::find(problem, residual) {
         belongs(FORCE + swing.axis, swing.share, swing.name);
     }
     found

@@ -4,11 +4,11 @@ use crate::insight::criteria::planned::PLANNED_MARGIN;
 use crate::insight::criteria::replicated::AGREEING_STRETCHES;
 use crate::insight::criteria::rival::TIE_DEVIATIONS;
 use crate::insight::diagnose::Diagnosed;
-use crate::insight::diagnose::candidates::{candidates, causes};
-use crate::insight::diagnose::finding::{Finding, Status};
-use crate::insight::diagnose::rank::rank;
-use crate::insight::diagnose::trial::try_these;
-use crate::insight::diagnose::unseen::deviations;
+use crate::insight::diagnose::fitting::unseen::deviations;
+use crate::insight::diagnose::judgement::finding::{Finding, Status};
+use crate::insight::diagnose::selection::candidates::{candidates, causes};
+use crate::insight::diagnose::selection::rank::rank;
+use crate::insight::diagnose::selection::trial::try_these;
 use crate::model::effects::{self, Card};
 
 /// A cause in the place of what is tied; none is that nothing is there.

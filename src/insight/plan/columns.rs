@@ -1,10 +1,10 @@
 //! By what a prediction can change, as columns: the numbers that are free beside any cause, and every cause.
 
 use super::causes::Question;
-use crate::insight::diagnose::channels::CHANNELS;
-use crate::insight::diagnose::numbers::{BEGIN, span};
-use crate::insight::diagnose::problem::{ChannelValues, Problem};
-use crate::insight::diagnose::whiten::Whitener;
+use crate::insight::diagnose::fitting::whiten::Whitener;
+use crate::insight::diagnose::prediction::channels::CHANNELS;
+use crate::insight::diagnose::prediction::numbers::{BEGIN, span};
+use crate::insight::diagnose::prediction::problem::{ChannelValues, Problem};
 use nalgebra::DVector;
 use rayon::prelude::*;
 use std::ops::Range;

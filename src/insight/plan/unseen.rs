@@ -3,7 +3,7 @@
 use super::causes::{Cause, Question};
 use crate::insight::criteria::flown::{ABSORBED_SHARE, SEEN_DEVIATIONS};
 use crate::insight::diagnose::Diagnosed;
-use crate::insight::diagnose::candidates::{causes, directions};
+use crate::insight::diagnose::selection::candidates::{causes, directions};
 use crate::model::effects::Card;
 
 /// Whether each of them is there, at a size between small and large; none where all would have shown.

@@ -2,7 +2,7 @@
 //! received is not what the rotors got: it moves it with the rates, boosts and compensates it.
 
 use crate::flight::series::{held, last_at};
-use crate::insight::diagnose::record::FlightRecord;
+use crate::insight::diagnose::prediction::record::FlightRecord;
 use crate::insight::prepare::data::Data;
 use crate::insight::prepare::flight::PreparedFlight;
 use crate::insight::prepare::rotors::{columns, command_per_speed};

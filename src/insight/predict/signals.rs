@@ -2,11 +2,11 @@
 
 use super::{PredictOptions, drive, together};
 use crate::base::stats::mean;
-use crate::insight::diagnose::horizon::{self, Horizon};
-use crate::insight::diagnose::model::Model;
-use crate::insight::diagnose::numbers::{self, BEGIN, TAU};
-use crate::insight::diagnose::predict::Predicted;
-use crate::insight::diagnose::record::{FlightRecord, full_rate};
+use crate::insight::diagnose::prediction::horizon::{self, Horizon};
+use crate::insight::diagnose::prediction::model::Model;
+use crate::insight::diagnose::prediction::numbers::{self, BEGIN, TAU};
+use crate::insight::diagnose::prediction::predict::Predicted;
+use crate::insight::diagnose::prediction::record::{FlightRecord, full_rate};
 use crate::insight::prepare::data::Data;
 use crate::insight::prepare::flight::PreparedFlight;
 use crate::model::effects::{self, ControllerPart};

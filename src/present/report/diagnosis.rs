@@ -10,7 +10,7 @@ pub use figures::{DiagnosisFigures, Figure};
 
 use super::page::{self, digits, unit};
 use crate::insight::diagnose::Diagnosed;
-use crate::insight::diagnose::finding::Diagnosis;
+use crate::insight::diagnose::judgement::diagnosis::Diagnosis;
 use maud::{Markup, PreEscaped, html};
 use std::path::Path;
 

@@ -4,13 +4,14 @@
 
 use super::flown::directions;
 use crate::base::stats::median;
-use crate::insight::diagnose::candidates::{candidates, causes};
-use crate::insight::diagnose::channels::CHANNELS;
-use crate::insight::diagnose::fit::whitened_slopes;
-use crate::insight::diagnose::numbers::span;
-use crate::insight::diagnose::problem::{ChannelValues, Problem};
-use crate::insight::diagnose::select::{Selection, left_over};
-use crate::insight::diagnose::whiten::Whitener;
+use crate::insight::diagnose::fitting::fit::whitened_slopes;
+use crate::insight::diagnose::fitting::whiten::Whitener;
+use crate::insight::diagnose::prediction::channels::CHANNELS;
+use crate::insight::diagnose::prediction::numbers::span;
+use crate::insight::diagnose::prediction::problem::{ChannelValues, Problem};
+use crate::insight::diagnose::selection::Selection;
+use crate::insight::diagnose::selection::candidates::{candidates, causes};
+use crate::insight::diagnose::selection::left_over::left_over;
 use crate::insight::estimate::gram::dot;
 use crate::insight::estimate::inverse::inverse;
 use nalgebra::{DMatrix, DVector};

@@ -1,7 +1,7 @@
 //! What two sets of flights of one vehicle say of each other.
 
-use crate::insight::diagnose::accident::LeftOut;
-use crate::insight::diagnose::finding::{Status, Value};
+use crate::insight::diagnose::judgement::finding::{Status, Value};
+use crate::insight::diagnose::selection::accident::LeftOut;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -2,8 +2,8 @@
 
 use super::change::Change;
 use crate::insight::criteria::changed::UNEVEN_CLOCK;
-use crate::insight::diagnose::finding::{Status, Value};
-use crate::insight::diagnose::problem::Problem;
+use crate::insight::diagnose::judgement::finding::{Status, Value};
+use crate::insight::diagnose::prediction::problem::Problem;
 use crate::model::effects::{self, Role};
 
 /// Only suspects delays that are a small share of what clocks drift apart by over a flight, where that is named.

@@ -1,11 +1,11 @@
 //! Columns of a linear comparison: what a difference adds to what both sets of flights show alike.
 
 use super::suspect::Suspect;
-use crate::insight::diagnose::candidates::{Candidate, Direction};
-use crate::insight::diagnose::fit::FitPoint;
-use crate::insight::diagnose::problem::{ChannelValues, Problem};
-use crate::insight::diagnose::score::{ScoreTest, score};
-use crate::insight::diagnose::whiten::Whitener;
+use crate::insight::diagnose::fitting::fit::FitPoint;
+use crate::insight::diagnose::fitting::score::{ScoreTest, score};
+use crate::insight::diagnose::fitting::whiten::Whitener;
+use crate::insight::diagnose::prediction::problem::{ChannelValues, Problem};
+use crate::insight::diagnose::selection::candidates::{Candidate, Direction};
 use crate::insight::estimate::gram::Grams;
 use crate::model::effects::Card;
 use nalgebra::DMatrix;

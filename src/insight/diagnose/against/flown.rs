@@ -1,8 +1,8 @@
 //! Functions of what is flown: what a model may get wrong.
 
-use crate::insight::diagnose::channels::{CHANNELS, FORCE, TURN};
-use crate::insight::diagnose::problem::{Problem, ResidualRow};
-use crate::insight::diagnose::select::Selection;
+use crate::insight::diagnose::prediction::channels::{CHANNELS, FORCE, TURN};
+use crate::insight::diagnose::prediction::problem::{Problem, ResidualRow};
+use crate::insight::diagnose::selection::Selection;
 use rayon::prelude::*;
 
 /// What was flown so long ago may still act on a rate or on the thrust, s.

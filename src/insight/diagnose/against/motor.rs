@@ -2,10 +2,10 @@
 
 use super::change::Change;
 use crate::base::stats::NORMAL_95;
-use crate::insight::diagnose::finding::{Status, Value};
-use crate::insight::diagnose::motors::{Driven, Weak, middle, weak};
-use crate::insight::diagnose::one_motor::{card, impact, sizes};
-use crate::insight::diagnose::problem::Problem;
+use crate::insight::diagnose::judgement::finding::{Status, Value};
+use crate::insight::diagnose::judgement::one_motor::{card, impact, sizes};
+use crate::insight::diagnose::prediction::motors::{Driven, Weak, middle, weak};
+use crate::insight::diagnose::prediction::problem::Problem;
 use std::collections::BTreeMap;
 
 /// The change of one motor between the two sets, where both have motor outputs or rotor speeds.

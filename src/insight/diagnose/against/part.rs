@@ -2,9 +2,9 @@
 
 use super::suspect::Suspect;
 use crate::insight::criteria::changed::PART_SHARE;
-use crate::insight::diagnose::fit::{self, FitPoint};
-use crate::insight::diagnose::problem::Problem;
-use crate::insight::diagnose::select::Selection;
+use crate::insight::diagnose::fitting::fit::{self, FitPoint};
+use crate::insight::diagnose::prediction::problem::Problem;
+use crate::insight::diagnose::selection::Selection;
 
 /// The place among the `suspects` of the only part of `whole`, fitted at `with`, that differs; none where all do, or
 /// where it is the whole of nothing.

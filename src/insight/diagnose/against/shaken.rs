@@ -2,8 +2,8 @@
 //! throttle is each vehicle's own.
 
 use super::change::Change;
-use crate::insight::diagnose::constant::shaking;
-use crate::insight::diagnose::finding::Status;
+use crate::insight::diagnose::judgement::constant::shaking;
+use crate::insight::diagnose::judgement::finding::Status;
 use crate::model::effects::{self, Card, Role};
 
 /// Makes such a difference a set with the vibration.
@@ -24,7 +24,7 @@ pub fn tell(changes: &mut [Change]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::insight::diagnose::finding::Value;
+    use crate::insight::diagnose::judgement::finding::Value;
     use crate::model::effects::Quantity;
 
     #[test]

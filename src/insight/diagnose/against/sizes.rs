@@ -1,9 +1,9 @@
 //! A cause as people read it, before, after and the difference of the two, with intervals by the delta method.
 
 use super::suspect::Suspect;
-use crate::insight::diagnose::finding::Value;
-use crate::insight::diagnose::fitted::FittedSelection;
-use crate::insight::diagnose::numbers::{DISCHARGE, MAX_RATE, TAU, THRUST};
+use crate::insight::diagnose::judgement::finding::Value;
+use crate::insight::diagnose::prediction::numbers::{DISCHARGE, MAX_RATE, TAU, THRUST};
+use crate::insight::diagnose::selection::fitted::FittedSelection;
 use crate::model::vehicle::Vehicle;
 use std::collections::BTreeMap;
 

@@ -4,9 +4,9 @@
 use super::change::Change;
 use crate::base::stats::mean;
 use crate::insight::criteria::changed::{SAME_ODOMETRY_S, SAME_ODOMETRY_SHARE};
-use crate::insight::diagnose::finding::Status;
-use crate::insight::diagnose::numbers::span;
-use crate::insight::diagnose::problem::Problem;
+use crate::insight::diagnose::judgement::finding::Status;
+use crate::insight::diagnose::prediction::numbers::span;
+use crate::insight::diagnose::prediction::problem::Problem;
 use crate::model::effects::{self, Card, Evidence, Role};
 
 /// Calls delays what the odometry says they are, with the numbers `x`; a set where it does not tell.

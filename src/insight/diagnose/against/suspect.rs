@@ -4,11 +4,11 @@ use crate::insight::criteria::Criterion;
 use crate::insight::criteria::changed::{
     CHANGED_DISCHARGE, CHANGED_DRAG, CHANGED_RATE, CHANGED_THRUST, CHANGED_TIME_CONSTANT,
 };
-use crate::insight::diagnose::candidates::base_numbers;
-use crate::insight::diagnose::contrast::Contrast;
-use crate::insight::diagnose::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
-use crate::insight::diagnose::problem::Problem;
-use crate::insight::diagnose::size::is_bounded;
+use crate::insight::diagnose::fitting::size::is_bounded;
+use crate::insight::diagnose::prediction::contrast::Contrast;
+use crate::insight::diagnose::prediction::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST, span};
+use crate::insight::diagnose::prediction::problem::Problem;
+use crate::insight::diagnose::selection::candidates::base_numbers;
 use crate::model::effects::{self, Card, CompactNumber, EffectKind, Role};
 use std::ops::Range;
 

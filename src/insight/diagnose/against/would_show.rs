@@ -4,7 +4,7 @@ use super::change::WouldShow;
 use super::columns::Tested;
 use super::suspect::Suspect;
 use crate::insight::criteria::flown::SEEN_DEVIATIONS;
-use crate::insight::diagnose::problem::Problem;
+use crate::insight::diagnose::prediction::problem::Problem;
 use std::collections::BTreeMap;
 
 /// Of each suspect, each number where it is seen best. An effect of several, such as a gyro's scales, may be plain

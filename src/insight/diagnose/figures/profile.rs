@@ -1,8 +1,8 @@
 //! The residual along a signal, in levels that are equally often met.
 
 use crate::base::stats::quantile;
-use crate::insight::diagnose::problem::{Predictions, Problem};
-use crate::insight::diagnose::signals::signals;
+use crate::insight::diagnose::prediction::problem::{Predictions, Problem};
+use crate::insight::diagnose::prediction::signals::signals;
 use std::collections::BTreeMap;
 
 const LEVELS: usize = 12;

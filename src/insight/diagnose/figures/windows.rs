@@ -1,7 +1,7 @@
 //! Where in the flight a channel is predicted worst, and how wrong it is over all of it.
 
 use crate::flight::series::period;
-use crate::insight::diagnose::problem::{Problem, ResidualRow};
+use crate::insight::diagnose::prediction::problem::{Problem, ResidualRow};
 use std::ops::Range;
 
 /// Length of a stretch that is shown, s, and how many are.

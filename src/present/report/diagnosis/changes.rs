@@ -2,7 +2,7 @@
 
 use super::{capital, sentence};
 use crate::insight::diagnose::against::{Change, Changes};
-use crate::insight::diagnose::finding::Status;
+use crate::insight::diagnose::judgement::finding::Status;
 use crate::present::report::page::{digits, unit};
 use maud::{Markup, html};
 

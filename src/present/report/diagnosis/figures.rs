@@ -8,7 +8,7 @@ mod time;
 use crate::base::error::Result;
 use crate::insight::diagnose::Diagnosed;
 use crate::insight::diagnose::figures::{ChannelFigure, channels};
-use crate::insight::diagnose::finding::Ahead;
+use crate::insight::diagnose::judgement::diagnosis::Ahead;
 use crate::present::report::plot::{BLUE, ORANGE};
 use plotters::style::{Color, RGBColor, ShapeStyle};
 

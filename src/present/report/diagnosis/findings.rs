@@ -1,7 +1,8 @@
 //! What was found, the most important first.
 
 use super::{capital, sentence};
-use crate::insight::diagnose::finding::{Diagnosis, Finding, Status, Value};
+use crate::insight::diagnose::judgement::diagnosis::Diagnosis;
+use crate::insight::diagnose::judgement::finding::{Finding, Status, Value};
 use crate::model::effects;
 use crate::present::report::page::{digits, unit};
 use maud::{Markup, html};

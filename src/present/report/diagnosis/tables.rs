@@ -1,7 +1,7 @@
 //! What was gained, what is left, what drifted, what could not show.
 
-use crate::insight::diagnose::finding::{Diagnosis, Verdict};
 use crate::insight::diagnose::gain;
+use crate::insight::diagnose::judgement::diagnosis::{Diagnosis, Verdict};
 use crate::present::report::page::{digits, unit};
 use maud::{Markup, html};
 

@@ -1,7 +1,7 @@
 //! Numbers that moved between two sets of flights, as a change.
 
 use crate::insight::diagnose::against::change::Change;
-use crate::insight::diagnose::finding::{Status, Value};
+use crate::insight::diagnose::judgement::finding::{Status, Value};
 use crate::model::vehicle::AXES;
 use std::collections::BTreeMap;
 

@@ -6,7 +6,7 @@ use crate::insight::criteria::changed::{
     AUTHORITY_ERROR, CHANGED_AUTHORITY, CHANGED_LAG, GAIN_TURNED, LAG_ERROR, SAME_AUTHORITY, YAW_TURNED,
 };
 use crate::insight::diagnose::against::change::Change;
-use crate::insight::diagnose::finding::Status;
+use crate::insight::diagnose::judgement::finding::Status;
 use crate::insight::diagnose::motor_loop::{MotorLoop, TurningPlant};
 use crate::model::effects::{self, Card, EffectKind, RateResponse, ResidualChannel, Role};
 

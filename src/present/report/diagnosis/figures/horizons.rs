@@ -2,8 +2,8 @@
 
 use super::{AFTER, BEFORE};
 use crate::base::error::Result;
-use crate::insight::diagnose::finding::Ahead;
-use crate::insight::diagnose::horizon::Horizon;
+use crate::insight::diagnose::judgement::diagnosis::Ahead;
+use crate::insight::diagnose::prediction::horizon::Horizon;
 use crate::present::report::drawing;
 use crate::present::report::plot::{self, Area, TEXT};
 use plotters::prelude::*;

@@ -1,0 +1,80 @@
+//! What flights could show, before any residual is looked at: the smallest size of each effect that they would give
+//! away, and tell from its nearest rival.
+
+use super::diagnosis::{Detectable, NotDetectable};
+use crate::insight::criteria::flown::{ABSORBED_SHARE, NEAREST_LIKENESS, SEEN_DEVIATIONS};
+use crate::insight::diagnose::prediction::numbers::span;
+use crate::insight::diagnose::prediction::problem::Problem;
+use crate::insight::diagnose::selection::rank::Reach;
+use crate::model::effects::{self, Card, EffectKind, ResidualChannel, Role};
+
+/// What the flights could show, and what not, and why.
+pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<NotDetectable>) {
+    let (mut can, mut cannot) = (Vec::new(), Vec::new());
+    for card in effects::cards() {
+        let p = &card.parameters[0];
+        let hidden =
+            |why: String, smallest: Option<f64>| NotDetectable { effect: card.id, why, smallest, unit: p.unit };
+        if span(card).any(|k| problem.model.base[k] != 0.0) {
+            continue;
+        }
+        let Some(r) = reach.iter().find(|r| r.card.id == card.id) else {
+            if let Some(why) = lacking(problem, card) {
+                cannot.push(hidden(why, None));
+            } else if card.kind != EffectKind::Random && card.role != Role::ConstantError {
+                cannot.push(hidden(format!("nothing flown would show it: {}", card.manoeuvre.0), None));
+            }
+            continue;
+        };
+        let smallest = SEEN_DEVIATIONS.get() / r.information.max(1e-300).sqrt();
+        if r.kept < ABSORBED_SHARE.get() {
+            cannot.push(hidden(
+                "the compact model's own numbers take it up; only a drift against a known vehicle shows it".into(),
+                None,
+            ));
+            continue;
+        }
+        let likeness = r.nearest.map_or(0.0, |(_, likeness)| likeness);
+        let told_apart = smallest / (1.0 - likeness * likeness).max(1e-6).sqrt();
+        if smallest > p.typical[1] {
+            cannot.push(hidden(format!("too little of it was flown: {}", card.manoeuvre.0), Some(smallest)));
+            continue;
+        }
+        let nearest = r.nearest.filter(|n| n.1 > NEAREST_LIKENESS.get()).map(|n| n.0);
+        can.push(Detectable {
+            effect: card.id,
+            smallest,
+            told_apart,
+            nearest,
+            unit: p.unit,
+            typical: p.typical,
+            manoeuvre: card.manoeuvre.0,
+        });
+    }
+    (can, cannot)
+}
+
+/// What the logs lack to show an effect.
+fn lacking(problem: &Problem, card: &Card) -> Option<String> {
+    let any = |from: usize| !problem.rows[from].is_empty();
+    let has = |channel: &ResidualChannel| match channel {
+        ResidualChannel::Rate => any(0),
+        ResidualChannel::Force => any(5),
+        ResidualChannel::Turn => any(6),
+        ResidualChannel::Push => any(9),
+        ResidualChannel::Voltage => any(12),
+    };
+    let name = |channel: &ResidualChannel| match channel {
+        ResidualChannel::Rate => "rate commands with the gyro",
+        ResidualChannel::Force => "thrust commands with the accelerometer",
+        ResidualChannel::Turn => "attitude",
+        ResidualChannel::Push => "attitude and velocity",
+        ResidualChannel::Voltage => "voltage",
+    };
+    if card.channels.iter().any(has) {
+        let moves = problem.records.iter().any(|r| r.moves);
+        return (!moves && matches!(card.kind, EffectKind::Drag | EffectKind::Thrust))
+            .then(|| "the logs hold no velocity".into());
+    }
+    Some(format!("the logs hold no {}", card.channels.iter().map(name).collect::<Vec<_>>().join(" and no ")))
+}

@@ -1,0 +1,87 @@
+//! In how many stretches of flight an effect shows.
+
+use crate::insight::criteria::evident::SURE_DEVIATIONS;
+use crate::insight::criteria::replicated::{
+    AGREEING_STRETCHES, RARE_DEVIATIONS, RARE_SHARE, RARE_STRETCHES, STRETCH_DEVIATIONS,
+};
+use crate::insight::diagnose::fitting::score::score;
+use crate::insight::diagnose::selection::fitted::FittedSelection;
+use crate::insight::estimate::gram::Grams;
+use crate::insight::estimate::inverse::inverse;
+use crate::model::effects::Card;
+use nalgebra::DVector;
+
+/// How often an effect was seen, and how many standard deviations its size is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Replicated {
+    pub count: f64,
+    /// Stretches that show it by themselves, and their share of the information.
+    alone: f64,
+    held: f64,
+    sure: f64,
+}
+
+impl Replicated {
+    /// Whether many stretches of flight agree.
+    pub fn agreed(&self) -> bool {
+        self.count >= AGREEING_STRETCHES.get()
+    }
+
+    /// Whether it is no more than a chance of many.
+    pub fn weak(&self) -> bool {
+        !self.evident() && (!self.agreed() || self.sure < STRETCH_DEVIATIONS.get())
+    }
+
+    pub fn evident(&self) -> bool {
+        let rarely =
+            self.alone >= RARE_STRETCHES.get() && self.held >= RARE_SHARE.get() && self.sure >= RARE_DEVIATIONS.get();
+        self.agreed() && self.sure >= SURE_DEVIATIONS.get() || rarely
+    }
+}
+
+/// How many stretches of flight agree on the effect. Either all do a little (the robust score of leaving it out counts
+/// them), or a few do by themselves, beyond two standard deviations, less those that contradict; with how sure all
+/// together are.
+pub fn stretches(fitted: &FittedSelection, card: &Card) -> Replicated {
+    let own = fitted.places(card);
+    if own.is_empty() {
+        return Replicated::default();
+    }
+    let n = fitted.point().free.len();
+    let rest = fitted.rest(&own);
+    // The residual as it was without the effect.
+    let mut grams = fitted.grams.clone();
+    let sizes: Vec<(usize, f64)> = own.iter().map(|&i| (i, fitted.point().x[fitted.point().free[i]])).collect();
+    for gram in grams.blocks.iter_mut().chain([&mut grams.sum]) {
+        for &(i, size) in &sizes {
+            for j in 0..=n {
+                let along = gram[(i, j)] * size;
+                gram[(n, j)] += along;
+            }
+            for j in 0..=n {
+                let along = gram[(j, i)] * size;
+                gram[(j, n)] += along;
+            }
+        }
+    }
+    let Some(score) = score(&grams, &rest, &own, n, &vec![0.0; n + 1]) else { return Replicated::default() };
+    let size = DVector::from_iterator(own.len(), sizes.iter().map(|(_, size)| *size));
+    let shows = STRETCH_DEVIATIONS.get();
+    let (mut alone, mut held, mut all): (f64, f64, f64) = (0.0, 0.0, 0.0);
+    for block in &score.blocks {
+        // Along the fitted direction: what this stretch alone makes of its size, in standard deviations.
+        let (left, right) = block;
+        let information = (size.transpose() * left * &size)[(0, 0)].max(1e-12);
+        let agrees = size.dot(&right.column(0)) / information.sqrt();
+        all += information;
+        if agrees > shows {
+            (alone, held) = (alone + 1.0, held + information);
+        } else if agrees < -shows {
+            (alone, held) = (alone - 1.0, held - information);
+        }
+    }
+    let covariance = Grams::pick(&fitted.covariance, &own, &own);
+    let sure = inverse(&covariance, &vec![0.0; own.len()]).map_or(0.0, |c| (size.transpose() * c * &size)[(0, 0)]);
+    let count = alone.max(score.evidence / own.len() as f64);
+    Replicated { count, alone, held: held / all, sure: sure.max(0.0).sqrt() }
+}

@@ -1,0 +1,147 @@
+//! Causes that have the same mean, told apart by what else they would leave.
+
+use super::lost::{Lost, lost_commands};
+use super::{Added, Selection};
+use crate::base::stats::mean;
+use crate::insight::criteria::evident::LEAST_GAIN;
+use crate::insight::criteria::rival::{LOST_DELAY, SAME_DELAY_S, SAME_DELAY_SHARE, SAME_LAG_SHARE};
+use crate::insight::diagnose::fitting::agreement;
+use crate::insight::diagnose::fitting::fit::{self, FitPoint};
+use crate::insight::diagnose::prediction::numbers::span;
+use crate::insight::diagnose::prediction::problem::Problem;
+use crate::model::constants::CONTROL_S;
+use crate::model::effects::{self, Card, Evidence, Role};
+
+/// Where the first number of an effect is.
+fn at(card: &Card) -> usize {
+    span(card).start
+}
+
+/// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two
+/// of the same size.
+pub fn clocks(problem: &Problem, selection: &mut Selection) {
+    for (stamped, delayed) in effects::twins(Evidence::OdometryClock) {
+        clock(problem, selection, stamped, delayed);
+        common(problem, selection, stamped, delayed);
+    }
+}
+
+/// The same of delays that are the parts of one: what they have in common is the clock's, as far as the odometry was
+/// off by as much, and what one of them has besides is its own.
+fn common(problem: &Problem, selection: &mut Selection, stamped: &'static Card, delayed: &'static Card) {
+    let moved = moved(problem);
+    let parts: Vec<&'static Card> = delayed.parts.iter().filter_map(|id| effects::card(id)).collect();
+    let held = |card: &&&Card| selection.added.iter().any(|a| a.card.id == card.id);
+    if parts.is_empty() || parts.iter().filter(held).count() < parts.len() {
+        return;
+    }
+    let mut x = selection.point.x.clone();
+    let least = parts.iter().map(|part| x[at(part)]).fold(f64::INFINITY, f64::min);
+    if moved == 0.0 || !is_same(least, moved) {
+        return;
+    }
+    x[at(stamped)] = least;
+    parts.iter().for_each(|part| x[at(part)] -= least);
+    let gone: Vec<&'static Card> = parts.into_iter().filter(|part| is_same(x[at(part)] + least, least)).collect();
+    gone.iter().for_each(|part| x[at(part)] = 0.0);
+    let mut free = selection.point.free.clone();
+    free.retain(|k| gone.iter().all(|part| at(part) != *k));
+    free.push(at(stamped));
+    let point = fit::fit(problem, &selection.whitener, &x, &free);
+    if point.total() < selection.point.total() + LEAST_GAIN.get() {
+        selection.added.retain(|a| gone.iter().all(|part| part.id != a.card.id));
+        selection.added.push(Added { card: stamped, ties: Vec::new() });
+        selection.point = point;
+    }
+}
+
+/// By how much the odometry's clocks were moved to the gyro's, s.
+fn moved(problem: &Problem) -> f64 {
+    mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>())
+}
+
+/// Whether a delay is what the odometry was moved by.
+fn is_same(delay: f64, moved: f64) -> bool {
+    (delay - moved).abs() <= SAME_DELAY_S.get() + SAME_DELAY_SHARE.get() * moved.abs()
+}
+
+/// The same of one pair.
+fn clock(problem: &Problem, selection: &mut Selection, stamped: &'static Card, delayed: &'static Card) {
+    let moved = moved(problem);
+    let is_one = |a: &Added| [stamped.id, delayed.id].contains(&a.card.id);
+    let Some(i) = selection.added.iter().position(is_one) else { return };
+    let mut x = selection.point.x.clone();
+    let late = x[at(delayed)] + x[at(stamped)];
+    let both = selection.added.iter().filter(|a| is_one(a)).count() > 1;
+    if moved == 0.0 || both || !is_same(late, moved) {
+        return;
+    }
+    (x[at(delayed)], x[at(stamped)]) = (0.0, late);
+    let mut free = selection.point.free.clone();
+    free.retain(|k| *k != at(delayed) && *k != at(stamped));
+    free.push(at(stamped));
+    let point = fit::fit(problem, &selection.whitener, &x, &free);
+    let apart = |at: &FitPoint| agreement::squares(problem, &selection.whitener, &at.residual);
+    if apart(&point) > apart(&selection.point) + LEAST_GAIN.get() {
+        return;
+    }
+    selection.added[i] = Added { card: stamped, ties: Vec::new() };
+    // The odometry was moved to a gyro that was late itself: its velocity seems late by as much, and is none.
+    selection
+        .added
+        .retain(|a| a.card.role != Role::VelocityLag || (x[at(a.card)] / moved - 1.0).abs() > SAME_LAG_SHARE.get());
+    selection.point = point;
+}
+
+/// Lost commands and a short delay have the same mean: what single stick movements leave decides.
+pub fn chance(problem: &Problem, selection: &mut Selection) -> Option<Lost> {
+    let (dropout, delayed) = effects::twins(Evidence::SingleMovements).next()?;
+    let lost = lost_commands(problem, selection);
+    let are_lost = lost.matters(dropout);
+    let (x, free) = if are_lost {
+        counted(selection, dropout, delayed, lost.share)
+    } else if let Some(i) = selection.added.iter().position(|a| a.card.id == dropout.id) {
+        not_lost(selection, i, delayed)
+    } else {
+        selection.added.iter_mut().for_each(|a| a.ties.retain(|c| c.id != dropout.id));
+        return None;
+    };
+    selection.point = fit::fit(problem, &selection.whitener, &x, &free);
+    are_lost.then_some(lost)
+}
+
+/// Numbers, and which of them are free, where this share of the commands is lost.
+fn counted(selection: &mut Selection, dropout: &'static Card, delayed: &Card, share: f64) -> (Vec<f64>, Vec<usize>) {
+    let mut x = selection.point.x.clone();
+    let mut free = selection.point.free.clone();
+    // A delay that lost commands account for is none.
+    let explained = |a: &Added| a.card.id == delayed.id && x[at(a.card)] < LOST_DELAY.get() * share * CONTROL_S;
+    let gone: Vec<Added> =
+        selection.added.iter().filter(|a| explained(a) || a.card.id == dropout.id).cloned().collect();
+    for a in &gone {
+        span(a.card).for_each(|k| x[k] = 0.0);
+        free.retain(|k| !span(a.card).contains(k));
+        selection.added.retain(|other| other.card.id != a.card.id);
+    }
+    selection.added.push(Added { card: dropout, ties: Vec::new() });
+    // Counted, not fitted: its mean is a delay that the time constants take up.
+    x[at(dropout)] = share;
+    (x, free)
+}
+
+/// The same where lost commands, added as number `i`, are none: their mean is there, their variance is not. The rival
+/// that has the same mean takes their place.
+fn not_lost(selection: &mut Selection, i: usize, delayed: &'static Card) -> (Vec<f64>, Vec<usize>) {
+    let mut x = selection.point.x.clone();
+    let mut free = selection.point.free.clone();
+    let Added { card: dropout, ties } = selection.added.remove(i);
+    let mean = std::mem::take(&mut x[at(dropout)]) * CONTROL_S;
+    free.retain(|k| *k != at(dropout));
+    let other = ties.first().copied().unwrap_or(delayed);
+    if selection.added.iter().all(|a| a.card.id != other.id) {
+        x[at(other)] = mean;
+        free.extend(span(other));
+        selection.added.insert(i, Added { card: other, ties: Vec::new() });
+    }
+    (x, free)
+}
