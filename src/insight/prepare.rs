@@ -4,5 +4,6 @@ pub mod attitude;
 pub mod data;
 pub mod flight;
 pub mod lag;
+pub mod lately;
 pub mod rotors;
 pub mod windows;

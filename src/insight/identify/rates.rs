@@ -6,6 +6,8 @@ use crate::base::stats::{Score, correlation, mean};
 use crate::insight::estimate::range::{RATE_GAIN, TIME_CONSTANT_S};
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::insight::prepare::lag::Following;
+use crate::insight::prepare::lately::Lately;
+use std::sync::Arc;
 
 /// Time constants to start from.
 pub const TAUS_S: [f64; 8] = [0.001, 0.004, 0.008, 0.015, 0.03, 0.06, 0.12, 0.25];
@@ -75,17 +77,22 @@ pub struct RateAxis<'a> {
     cutoff_hz: f64,
     /// Rate of every flight, rad/s, smoothed.
     measured: Vec<Vec<f64>>,
+    /// Responses of every flight with gain 1 and no offset, rad/s, smoothed like the measurement.
+    responses: Lately<Following, Vec<Vec<f64>>>,
 }
+
+/// Responses that are kept: those of one step of a fit.
+const RESPONSES: usize = 8;
 
 impl<'a> RateAxis<'a> {
     pub fn new(data: &'a Data, axis: usize, cutoff_hz: f64) -> Self {
         let measured = data.signals(|flight| flight.smooth(flight.measured(axis), cutoff_hz));
-        Self { data, axis, cutoff_hz, measured }
+        Self { data, axis, cutoff_hz, measured, responses: Lately::new(RESPONSES) }
     }
 
-    /// The response with gain 1 and no offset, rad/s, smoothed like the measurement.
-    fn response(&self, by: Following) -> Vec<Vec<f64>> {
-        self.data.signals(|flight| flight.smooth(flight.response(self.axis, by), self.cutoff_hz))
+    fn response(&self, by: Following) -> Arc<Vec<Vec<f64>>> {
+        let all = || self.data.signals(|flight| flight.smooth(flight.response(self.axis, by), self.cutoff_hz));
+        self.responses.get(by, all)
     }
 
     fn choose(&self, part: DataPart) -> Chosen {

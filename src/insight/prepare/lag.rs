@@ -1,6 +1,7 @@
 //! What a held command has become behind the response of what follows it.
 
-use crate::model::dynamics::response::{alpha, limited, second_order, toward};
+use crate::base::lane::fused;
+use crate::model::dynamics::response::{SecondOrder, alpha, limited, second_order, toward};
 
 /// How a command is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,39 +23,90 @@ impl Following {
     }
 }
 
+/// Steps of time that differ by less are of one length, s: clocks are rounded by more.
+const SAME_S: f64 = 1e-10;
+/// Lengths that are kept, each at its place by the microsecond: a prime, for most are round.
+const KEPT: usize = 13;
+
+/// What a step of `dt` seconds does.
+#[derive(Clone, Copy)]
+struct Step {
+    dt: f64,
+    order: Order,
+}
+
+/// By the order of the response: the share of the gap that closes, or both of value and slope.
+#[derive(Clone, Copy)]
+enum Order {
+    First(f64),
+    Second(SecondOrder<f64>),
+}
+
+/// A response over steps of time, which are of few lengths.
+struct Steps {
+    by: Following,
+    kept: [Step; KEPT],
+}
+
+impl Steps {
+    fn new(by: Following) -> Self {
+        Self { by, kept: [Step::new(by, 0.0); KEPT] }
+    }
+
+    /// The response and its slope after `dt` seconds toward `to`.
+    #[inline(always)]
+    fn after(&mut self, [y, slope]: [f64; 2], to: f64, dt: f64) -> [f64; 2] {
+        let Following { tau, slew, inertia, .. } = self.by;
+        if slew > 0.0 && inertia == 0.0 {
+            return [limited(y, to, tau, slew, dt), 0.0];
+        }
+        let step = &mut self.kept[(dt * 1e6).round() as usize % KEPT];
+        if (step.dt - dt).abs() > SAME_S {
+            *step = Step::new(self.by, dt);
+        }
+        match step.order {
+            Order::First(alpha) => [toward(y, to, alpha), 0.0],
+            Order::Second(step) => step.after(y, slope, to).into(),
+        }
+    }
+}
+
+impl Step {
+    fn new(by: Following, dt: f64) -> Self {
+        let Following { tau, inertia, .. } = by;
+        let second = || Order::Second(second_order(tau, inertia, dt));
+        Self { dt, order: if inertia > 0.0 { second() } else { Order::First(alpha(tau, dt)) } }
+    }
+}
+
 /// `values`, each given at its of the ascending `times` and held until the next, as `by` follows them, at each of `at`.
 /// The response is integrated exactly. Values that are not finite are skipped; NaN before the first.
 pub fn followed(times: &[f64], values: &[f64], at: &[f64], by: Following) -> Vec<f64> {
-    let Following { tau, delay, slew, inertia } = by;
+    // Elsewhere a fused multiply-add is a call.
+    fused(
+        #[inline(always)]
+        || follow(times, values, at, by),
+    )
+}
+
+#[inline(always)]
+fn follow(times: &[f64], values: &[f64], at: &[f64], by: Following) -> Vec<f64> {
     let known: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
     let Some(&first) = known.first() else { return vec![f64::NAN; at.len()] };
-    let (mut now, mut y, mut slope) = (0, values[first], 0.0);
-    // Nearly all steps are of one length.
-    let mut last = (f64::NAN, 0.0);
-    let mut after = |y: f64, slope: f64, to: f64, dt: f64| {
-        if inertia > 0.0 {
-            return second_order(y, slope, to, tau, inertia, dt);
-        }
-        if slew > 0.0 {
-            return (limited(y, to, tau, slew, dt), 0.0);
-        }
-        if last.0 != dt {
-            last = (dt, alpha(tau, dt));
-        }
-        (toward(y, to, last.1), 0.0)
-    };
+    let (mut now, mut y) = (0, [values[first], 0.0]);
+    let mut steps = Steps::new(by);
     let one = |t: &f64| {
-        let t = t - delay;
+        let t = t - by.delay;
         if t < times[first] {
             return f64::NAN;
         }
         while known.get(now + 1).is_some_and(|&next| times[next] <= t) {
             let i = known[now];
-            (y, slope) = after(y, slope, values[i], times[known[now + 1]] - times[i]);
+            y = steps.after(y, values[i], times[known[now + 1]] - times[i]);
             now += 1;
         }
         let i = known[now];
-        after(y, slope, values[i], t - times[i]).0
+        steps.after(y, values[i], t - times[i])[0]
     };
     at.iter().map(one).collect()
 }

@@ -25,9 +25,30 @@ pub fn limited<R: Real>(from: R, to: R, tau: R, slew: R, dt: R) -> R {
     toward(reached, to, R::one() - (-((dt - straight) / tau)).exp())
 }
 
-/// inertia x'' + tau x' + x = to, exactly: x and x' after `dt` seconds.
+/// What one step of time does to inertia x'' + tau x' + x = to, exactly.
+#[derive(Clone, Copy, Debug)]
+pub struct SecondOrder<R> {
+    sigma: R,
+    stiffness: R,
+    even: R,
+    odd: R,
+}
+
+impl<R: Real> SecondOrder<R> {
+    /// x and x' after the step.
+    #[inline(always)]
+    pub fn after(self, x: R, slope: R, to: R) -> (R, R) {
+        let Self { sigma, stiffness, even, odd } = self;
+        let gap = x - to;
+        let value = gap.mul_add(sigma.mul_add(odd, even), slope * odd);
+        let change = slope.mul_add(even - sigma * odd, -(gap * stiffness * odd));
+        (to + value, change)
+    }
+}
+
+/// A step of `dt` seconds.
 #[inline(always)]
-pub fn second_order<R: Real>(x: R, slope: R, to: R, tau: R, inertia: R, dt: R) -> (R, R) {
+pub fn second_order<R: Real>(tau: R, inertia: R, dt: R) -> SecondOrder<R> {
     let stiffness = R::one() / inertia.max(R::of(1e-10));
     let sigma = tau * stiffness * R::of(0.5);
     let square = sigma.mul_add(sigma, -stiffness);
@@ -45,11 +66,7 @@ pub fn second_order<R: Real>(x: R, slope: R, to: R, tau: R, inertia: R, dt: R) -
         let decay = (-(sigma * dt)).exp();
         (even, odd) = (R::select(oscillates, decay * cos, even), R::select(oscillates, decay * sin, odd));
     }
-    odd = odd / root;
-    let gap = x - to;
-    let value = gap.mul_add(sigma.mul_add(odd, even), slope * odd);
-    let change = slope.mul_add(even - sigma * odd, -(gap * stiffness * odd));
-    (to + value, change)
+    SecondOrder { sigma, stiffness, even, odd: odd / root }
 }
 
 #[cfg(test)]
@@ -69,7 +86,7 @@ mod tests {
     #[test]
     fn second_order_rings_creeps_and_settles_as_integrated() {
         for (tau, inertia) in [(0.01, 1e-4), (0.02, 1e-4), (0.05, 1e-4), (0.012, 1e-6)] {
-            let (x, v) = second_order(0.2, 3.0, -0.5, tau, inertia, 0.015);
+            let (x, v) = second_order(tau, inertia, 0.015).after(0.2, 3.0, -0.5);
             let (ex, ev) = euler(0.2, 3.0, 0.015, |x, v| (-0.5 - x - tau * v) / inertia);
             assert!((x - ex).abs() < 2e-4 && (v - ev).abs() < 0.03, "{tau} {inertia}: {x} {ex}, {v} {ev}");
         }

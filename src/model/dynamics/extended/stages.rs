@@ -75,7 +75,8 @@ pub fn actuator_response<R: Real>(
         }
         if i < 3 && oscillates {
             let inertia = actuator.inertia[i];
-            let (value, change) = response::second_order(command[i], slope[i], setpoint.command[i], tau[i], inertia, h);
+            let (value, change) =
+                response::second_order(tau[i], inertia, h).after(command[i], slope[i], setpoint.command[i]);
             next[i] = R::select(second_order, value, next[i]);
             next_slope[i] = R::select(second_order, change, next_slope[i]);
         }
