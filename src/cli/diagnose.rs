@@ -33,7 +33,8 @@ pub struct Args {
     /// An earlier log of the same vehicle; give it once for each: what changed since is named first
     #[arg(long, value_name = "LOG")]
     against: Vec<PathBuf>,
-    /// The vehicle that the simulation takes it for: a name or a file [default: identified from the logs]
+    /// The vehicle that the simulation takes it for: a name or a file [default: identified from the logs, the
+    /// earlier ones with --against]
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<String>,
     /// New file for everything that was found, as JSON
@@ -125,8 +126,9 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         identify::refuse::problems(&before)?;
     }
     let damaged = logs::damaged(&before);
-    let base = given.map_or_else(|| identified(args, &before, &bar), Ok)?;
     let logs = before.split_off(args.against.len());
+    // What changed is told against what the vehicle was.
+    let base = given.map_or_else(|| identified(args, if before.is_empty() { &logs } else { &before }, &bar), Ok)?;
     let mut watch = |step: &str, share: f64| {
         bar.set_position((100.0 * share) as u64);
         bar.set_message(step.to_string());

@@ -68,6 +68,21 @@ fn an_effect_that_went_is_named_with_its_size() {
     assert!((delay.value + 0.02).abs() < 2e-3, "{delay:?}");
 }
 
+/// As after a repair of a vehicle that was identified before it: the base has what went. A late gyro was named before
+/// it, and it for what that leaves.
+#[test]
+fn what_the_base_vehicle_has_may_go() {
+    let vehicle = Vehicle::draw(SEED);
+    let mut base = vehicle.in_racer();
+    base.effects.sizes.insert("rate_delay".into(), [("delay".to_string(), 0.02)].into());
+    let both = [("axial_inflow", 0.6)];
+    let [before, after] = [flown(&vehicle, 1, &[both[0], ("rate_delay", 0.02)]), flown(&vehicle, 2, &both)];
+    let changes = compare(vec![check(&before)], vec![check(&after)], &base, &mut |_, _| ());
+    assert_eq!(named(&changes), ["rate_delay"]);
+    let delay = &changes.changes[0].difference["delay"];
+    assert!((delay.value + 0.02).abs() < 2e-3, "{delay:?}");
+}
+
 /// Another propeller: a number of the compact model, and no effect.
 #[test]
 fn thrust_that_is_less_is_named_as_such() {

@@ -19,6 +19,7 @@ mod shaken;
 mod sizes;
 mod stamped;
 mod suspect;
+mod untold;
 mod would_show;
 
 use crate::insight::Watch;
@@ -109,6 +110,7 @@ fn changes(
     clock::doubt(problem, &mut changes);
     stamped::tell(problem, x, &mut changes);
     shaken::tell(&mut changes);
+    untold::tell(&mut changes);
     // Constant errors of sensors and clocks are others after every switching on: what the vehicle does comes first, the
     // surest of it before all, told from all others or not.
     let own = [Role::ConstantError, Role::ClockFast];

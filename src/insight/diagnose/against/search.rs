@@ -15,7 +15,7 @@ use crate::insight::diagnose::judgement::finding::Status;
 use crate::insight::diagnose::prediction::numbers::span;
 use crate::insight::diagnose::prediction::problem::Problem;
 use crate::insight::diagnose::selection::Selection;
-use crate::insight::diagnose::selection::candidates::{Candidate, candidates};
+use crate::insight::diagnose::selection::candidates::{Candidate, candidates, own_differences};
 use crate::insight::diagnose::selection::fitted::FittedSelection;
 use crate::model::effects::{Card, are_rivals};
 use rayon::prelude::*;
@@ -35,6 +35,8 @@ pub struct DifferenceSearch<'a> {
     /// What both sets have in common, and the differences that hold.
     pub selection: Selection,
     pub found: Vec<FoundDifference>,
+    /// Numbers where the base vehicle's own effects differ between the sets, which no difference is told from yet.
+    apart: Vec<f64>,
     /// What was fitted and did not hold, beside those that did.
     pub rejected: Vec<Change>,
     /// What was tested last.
@@ -48,13 +50,19 @@ impl<'a> DifferenceSearch<'a> {
     /// From `selection`, which both sets have in common.
     pub fn new(problem: &'a Problem, suspects: &'a [Suspect], mut selection: Selection) -> Self {
         let Selection { point, whitener, .. } = &mut selection;
-        *point = fit::again(problem, whitener, point);
+        let apart = point.x.clone();
+        let own: Vec<usize> = own_differences(problem).collect();
+        *point = if own.is_empty() {
+            fit::again(problem, whitener, point)
+        } else {
+            fit::fit_without(problem, whitener, point, &own)
+        };
         let cards: Vec<&'static Card> = suspects.iter().filter_map(|s| s.card).collect();
         let held = |card: &Card| span(card).any(|k| point.free.contains(&k));
         let cards: Vec<_> = cards.into_iter().filter(|card| !held(card)).collect();
         let candidates = candidates(problem, whitener, point, &cards);
         let (found, rejected, tested, pending) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Self { problem, suspects, selection, found, rejected, tested, pending, candidates }
+        Self { problem, suspects, selection, found, apart, rejected, tested, pending, candidates }
     }
 
     /// Adds differences until none is worth it.
@@ -143,19 +151,41 @@ impl<'a> DifferenceSearch<'a> {
             Some(card) if card.parameters[0].unit == "s" => 4,
             _ => 1,
         };
-        let tried = of.take(starts).map(|tested| self.fitted(tested));
+        let expected = of.take(starts).map(|tested| self.start(&self.suspects[suspect], tested));
+        let tried = expected.chain(self.in_one_set(suspect)).map(|x| self.fitted(suspect, &x));
         tried.max_by(|a, b| a.gain.total_cmp(&b.gain))
     }
 
-    /// A suspect fitted as `tested` expects it, and what its difference gains.
-    fn fitted(&self, tested: &Tested) -> Tried {
+    /// Where the fit of an effect that both sets have begins as well: in one of them alone, or apart as selection had
+    /// it. From both alike a step may not reach that, of a delay.
+    fn in_one_set(&self, suspect: usize) -> Vec<Vec<f64>> {
+        let (suspect, x) = (&self.suspects[suspect], &self.selection.point.x);
+        let contrast = self.problem.contrast.as_ref().filter(|_| suspect.card.is_some());
+        let differs = |k: usize| contrast?.of(k).filter(|d| suspect.own.contains(d) && x[k] != 0.0);
+        let pairs: Vec<(usize, usize)> = suspect.common().filter_map(|k| Some((k, differs(k)?))).collect();
+        let begun = |value: &dyn Fn(usize, usize) -> (f64, f64)| {
+            let mut x = x.clone();
+            pairs.iter().for_each(|&(k, d)| (x[k], x[d]) = value(k, d));
+            x
+        };
+        if pairs.is_empty() {
+            Vec::new()
+        } else if pairs.iter().any(|(_, d)| self.apart[*d] != 0.0) {
+            vec![begun(&|k, d| (self.apart[k], self.apart[d]))]
+        } else {
+            vec![begun(&|k, _| (0.0, x[k])), begun(&|k, _| (x[k], -x[k]))]
+        }
+    }
+
+    /// A suspect fitted from `start`, and what its difference gains.
+    fn fitted(&self, suspect: usize, start: &[f64]) -> Tried {
         let problem = self.problem;
         let Selection { point, whitener, .. } = &self.selection;
-        let suspect = &self.suspects[tested.suspect];
+        let (place, suspect) = (suspect, &self.suspects[suspect]);
         let unknown = |k: &usize| !point.free.contains(k);
         let common: Vec<usize> = suspect.common().filter(unknown).collect();
         let own: Vec<usize> = common.iter().chain(&suspect.own).copied().collect();
-        let with = fit::refit(problem, whitener, point, &own, &self.start(suspect, tested));
+        let with = fit::refit(problem, whitener, point, &own, start);
         let alike = if common.is_empty() {
             point.total()
         } else {
@@ -168,7 +198,7 @@ impl<'a> DifferenceSearch<'a> {
             }
             fit::refit(problem, whitener, point, &common, &x).total().min(point.total())
         };
-        Tried { suspect: tested.suspect, gain: alike - with.total(), point: with }
+        Tried { suspect: place, gain: alike - with.total(), point: with }
     }
 
     /// Where the fit of a suspect begins: an effect of later flights, or of the earlier ones.

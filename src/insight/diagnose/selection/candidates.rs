@@ -41,7 +41,8 @@ pub fn base_numbers(problem: &Problem) -> Vec<usize> {
     let contrast = problem.contrast.as_ref();
     let each = errors.into_iter().flat_map(effects::acting).flat_map(span).chain([DISCHARGE]);
     let each = each.filter_map(|k| contrast?.of(k));
-    let own = effects::cards().flat_map(span).filter(|&k| problem.model.base[k] != 0.0);
+    let each = each.chain(own_differences(problem));
+    let own = of_base_effects(problem);
     let mut all: Vec<usize> = (0..=DISCHARGE).chain(biases).chain(volts).chain(each).chain(own).collect();
     all.sort_unstable();
     all.dedup();
@@ -49,6 +50,16 @@ pub fn base_numbers(problem: &Problem) -> Vec<usize> {
     all.retain(|&k| problem.model.numbers[k].high > problem.model.numbers[k].low);
     all.retain(|&k| !problem.slope(&state, &problem.model.base, k).iter().all(Vec::is_empty));
     all
+}
+
+/// Numbers of the effects that the base vehicle has.
+fn of_base_effects(problem: &Problem) -> impl Iterator<Item = usize> {
+    effects::cards().flat_map(span).filter(|&k| problem.model.base[k] != 0.0)
+}
+
+/// Differences of those: what was given is one set's, and the other may lack it.
+pub fn own_differences(problem: &Problem) -> impl Iterator<Item = usize> {
+    of_base_effects(problem).filter_map(|k| problem.contrast.as_ref()?.of(k))
 }
 
 /// Ways to begin with an effect: one size where it is linear, several where a large one looks unlike a small one.
