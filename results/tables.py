@@ -365,12 +365,13 @@ def against_runs():
     body = []
     for seed, *_ in PAIRS:
         file = f"against-seed{seed}"
-        first = rows(file)[0]
-        without, changed, count = counted(latest(file) if "build" in first else rows(file))
+        run = rows(file)
+        first, builds = run[0], ", ".join(dict.fromkeys(r["build"] for r in run if "build" in r))
+        without, changed, count = counted(run)
         said = [count(changed, said) for said in ("right", "in the set", "WRONG FIRST", "MISSED", "could not show")]
         named = wilson(len(without) - count(without, "right"), len(without))
         right = wilson(said[0], len(changed))
-        body.append((f"[{seed}](results/{file}.csv)", f"{first.get('flight_s', 60)} s", first.get("build", "3b0f02e"),
+        body.append((f"[{seed}](results/{file}.csv)", f"{first.get('flight_s', 60)} s", builds or "3b0f02e",
                      named, right, *said[1:]))
     return table(["seed", "flights", "build", "unchanged: a name", "changed: right first", "in a set", "wrong first",
                   "missed", "told not to show"], body)

@@ -31,7 +31,7 @@ use judgement::diagnosis::{Diagnosis, Residual, Verdict};
 use judgement::finding::{Finding, Status};
 use judgement::findings::Judgement;
 use judgement::judge::Judged;
-use judgement::{detectable, doubt, findings, one_motor, set_aside};
+use judgement::{detectable, doubt, drift, findings, one_motor, set_aside};
 use prediction::channels::NAMES;
 use prediction::model::Model;
 use prediction::motors;
@@ -85,18 +85,17 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
     let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
     let fitted = FittedSelection::new(&problem, &selection);
-    let Judgement { mut findings, judged, drift, unexplained, small } = findings::find(&fitted, lost, &structure);
+    let Judgement { mut findings, judged, mut drift, unexplained, small } = findings::find(&fitted, lost, &structure);
     let driven: Vec<motors::Driven> = problem.records.iter().flat_map(|r| r.driven.clone()).collect();
     one_motor::doubt_moves(&driven, &mut findings);
     doubt::all(&fitted, &mut findings);
     findings.extend(aside);
     watch("measuring the gain", 0.9);
     let (kept, worse) = keep::keep(&problem, &selection, &mut findings);
-    let kept = &kept;
-    let fitted_kept = FittedSelection::new(&problem, kept);
+    let fitted_kept = FittedSelection::new(&problem, &kept);
     keep::as_written(&fitted_kept, &mut findings);
     one_motor::name(&driven, &mut findings);
-    let held = gain::measure(&problem, &selection, kept);
+    let held = gain::measure(&problem, &selection, &kept);
     gains(&problem, &held, &judged, &mut findings);
     findings.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
     let verdict = match (unexplained.is_empty(), findings.is_empty()) {
@@ -107,7 +106,8 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let (detectable, not_detectable) = detectable::judge(&problem, &selection.reach);
     let extended = match worse {
         Some(worse) => Err(worse),
-        None => extend::vehicle(&fitted_kept, &findings),
+        None => extend::vehicle(&fitted_kept, &findings)
+            .inspect(|_| drift::written(&mut drift, &problem.model, &kept.point.x)),
     };
     let diagnosis = Diagnosis {
         verdict,

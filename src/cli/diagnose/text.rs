@@ -28,9 +28,17 @@ pub fn text(d: &Diagnosis) -> String {
     }
     if !d.drift.is_empty() {
         let rows = d.drift.iter().map(|x| {
-            vec![x.parameter.clone(), format!("{:.4}", x.base), interval(x.value, x.low, x.high), x.unit.into()]
+            let written = x.in_vehicle.map_or("-".into(), |v| format!("{v:.4}"));
+            vec![
+                x.parameter.clone(),
+                format!("{:.4}", x.base),
+                interval(x.value, x.low, x.high),
+                written,
+                x.unit.into(),
+            ]
         });
-        let table = columns::table(&["drift against the base", "was", "is (95 % interval)", ""], rows.collect(), 1..2);
+        let head = ["drift against the base", "was", "is (95 % interval)", "extended vehicle", ""];
+        let table = columns::table(&head, rows.collect(), 1..2);
         out.push(table);
     }
     let rows = d.held_out.iter().map(|(name, g)| {

@@ -54,6 +54,17 @@ impl Extension {
         }
     }
 
+    /// Sizes that are as in `given` are as well known as there.
+    pub fn known_as(&mut self, given: &Extension) {
+        for (i, key) in given.uncertain.iter().enumerate() {
+            let Some((effect, parameter)) = key.split_once('.') else { continue };
+            let size = |of: &Extension| of.sizes.get(effect).and_then(|sizes| sizes.get(parameter).copied());
+            if let Some(size) = size(given).filter(|_| size(given) == size(self) && !self.uncertain.contains(key)) {
+                self.put(effect, parameter, size, given.covariance[i][i].sqrt());
+            }
+        }
+    }
+
     /// Takes an effect away.
     pub fn remove(&mut self, effect: &str) {
         self.sizes.remove(effect);
@@ -167,5 +178,19 @@ mod tests {
         out.remove(b.0);
         assert_eq!((out.covariance.clone(), out.sizes.len()), (vec![vec![4e-6]], 2));
         assert!(out.check().is_ok(), "{out:?}");
+    }
+
+    #[test]
+    fn what_stays_as_given_is_known_as_well_as_before() {
+        let [a, b] = [MODEL[0], MODEL[1]].map(|card| (card.id, card.parameters[0].name));
+        let mut given = Extension::default();
+        given.put(a.0, a.1, 0.01, 1e-3);
+        given.put(b.0, b.1, 0.01, 2e-3);
+        let mut fitted = Extension::default();
+        fitted.put(a.0, a.1, 0.01, 0.0);
+        fitted.put(b.0, b.1, 0.02, 0.0);
+        fitted.known_as(&given);
+        assert_eq!(fitted.uncertain, [format!("{}.{}", a.0, a.1)]);
+        assert!((fitted.covariance[0][0] - 1e-6).abs() < 1e-18);
     }
 }

@@ -7,10 +7,10 @@ use crate::insight::diagnose::prediction::numbers::{BEGIN, span};
 use crate::insight::diagnose::prediction::problem::Problem;
 use crate::insight::diagnose::selection::Selection;
 use crate::insight::diagnose::selection::fitted::FittedSelection;
-use crate::model::effects::{self, EffectKind, MODEL, Role};
+use crate::model::effects::{EffectKind, MODEL, Role};
 use crate::model::vehicle::Vehicle;
 use crate::model::vehicle::extension::Extension;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The base vehicle with the compact model's numbers of a selection. Beside an effect of the battery its voltages are
 /// those at rest: a pack that sags is above what was measured under load.
@@ -27,9 +27,9 @@ pub fn at_rest(problem: &Problem, selection: &Selection) -> Vehicle {
     vehicle
 }
 
-/// The base vehicle with every named effect of the simulator. Effects of sensors and of chance are no part of a
-/// vehicle, nor is the wind, which is the day's; what a change of the compact model's numbers already holds is not
-/// added a second time.
+/// The base vehicle with every named effect of the simulator, and those that it has itself as they were fitted. Effects
+/// of sensors and of chance are no part of a vehicle, nor is the wind, which is the day's; what a change of the compact
+/// model's numbers already holds is not added a second time.
 ///
 /// # Errors
 ///
@@ -37,14 +37,16 @@ pub fn at_rest(problem: &Problem, selection: &Selection) -> Vehicle {
 pub fn vehicle(fitted: &FittedSelection, findings: &[Finding]) -> Result<Vehicle, String> {
     let point = &fitted.selection.point;
     let mut vehicle = at_rest(fitted.problem, fitted.selection);
-    let mut sizes: BTreeMap<String, BTreeMap<String, f64>> = vehicle.effects.sizes.clone();
-    let mut uncertain: Vec<(String, usize)> = Vec::new();
+    let given = std::mem::take(&mut vehicle.effects);
     let of_day = |f: &Finding| f.has(Role::UniformWind);
     let named = findings.iter().filter(|f| f.status != Status::Suspected && !of_day(f));
-    for card in named.flat_map(|f| f.cards().map(|(card, _)| card)) {
-        let Some(card) = MODEL.iter().find(|of_vehicle| of_vehicle.id == card.id) else { continue };
-        let Some(added) = fitted.selection.added.iter().find(|a| a.card.id == card.id) else { continue };
-        for (p, k) in added.card.parameters.iter().zip(span(card)) {
+    let named = named.flat_map(|f| f.cards().map(|(card, _)| card.id));
+    let added = |id: &&str| fitted.selection.added.iter().any(|a| a.card.id == *id);
+    let all: BTreeSet<&str> = given.sizes.keys().map(String::as_str).chain(named.filter(added)).collect();
+    let mut sizes: BTreeMap<String, BTreeMap<String, f64>> = BTreeMap::new();
+    let mut uncertain: Vec<(String, usize)> = Vec::new();
+    for card in all.iter().filter_map(|id| MODEL.iter().find(|card| card.id == *id)) {
+        for (p, k) in card.parameters.iter().zip(span(card)) {
             sizes.entry(card.id.into()).or_default().insert(p.name.into(), point.x[k]);
             if let Some(place) = point.free.iter().position(|f| *f == k) {
                 uncertain.push((format!("{}.{}", card.id, p.name), place));
@@ -60,8 +62,8 @@ pub fn vehicle(fitted: &FittedSelection, findings: &[Finding]) -> Result<Vehicle
     if !sizes.is_empty() {
         let uncertain = uncertain.iter().map(|(key, _)| key.clone()).collect();
         vehicle.effects = Extension { source: Some(source), sizes, uncertain, covariance };
+        vehicle.effects.known_as(&given);
     }
-    debug_assert!(vehicle.effects.sizes.keys().all(|id| effects::card(id).is_some()));
     match vehicle.check() {
         Ok(()) => Ok(vehicle),
         Err(invalid) => Err(format!(

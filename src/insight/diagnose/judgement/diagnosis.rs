@@ -1,6 +1,6 @@
 //! All that a diagnosis says.
 
-use super::finding::{Finding, Gain};
+use super::finding::{Finding, Gain, Status};
 use crate::insight::diagnose::prediction::horizon::Horizon;
 use crate::insight::diagnose::selection::accident::LeftOut;
 use crate::insight::diagnose::structure::Structure;
@@ -32,7 +32,10 @@ pub struct Drift {
     pub low: f64,
     /// Upper end of its 95 % interval.
     pub high: f64,
-    /// Of all four.
+    /// What the extended vehicle has, where there is one: the base's, where a move does not pay on unseen flight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub in_vehicle: Option<f64>,
+    /// Of all five.
     pub unit: &'static str,
 }
 
@@ -140,9 +143,12 @@ impl Diagnosis {
     /// The verdict in a sentence.
     pub fn headline(&self) -> String {
         let seconds = self.usable_s;
-        let found = match self.findings.len() {
-            1 => "one effect".into(),
-            n => format!("{n} effects"),
+        let count = |n: usize| if n == 1 { "one effect".to_string() } else { format!("{n} effects") };
+        let suspected = self.findings.iter().filter(|f| f.status == Status::Suspected).count();
+        let found = match (self.findings.len() - suspected, suspected) {
+            (0, suspected) => format!("{} suspected, none named,", count(suspected)),
+            (named, 0) => count(named),
+            (named, suspected) => format!("{} and {suspected} suspected", count(named)),
         };
         match self.verdict {
             Verdict::Clean => format!("no effect beyond noise in {seconds:.0} s of flight"),

@@ -7,8 +7,10 @@ use crate::base::stats::NORMAL_95;
 use crate::insight::criteria::drifted::{
     MOVED_DEVIATIONS, MOVED_DISCHARGE, MOVED_DRAG, MOVED_RATE, MOVED_THRUST, MOVED_TIME_CONSTANT, MOVED_VOLTAGE,
 };
+use crate::insight::diagnose::prediction::model::Model;
 use crate::insight::diagnose::prediction::numbers::{DISCHARGE, DRAG, MAX_RATE, TAU, THRUST};
 use crate::insight::diagnose::selection::fitted::FittedSelection;
+use std::ops::Range;
 
 /// Numbers that differ from the base vehicle's, and a cause if one explains all of thrust's and drag's moves.
 pub fn find(fitted: &FittedSelection) -> (Vec<Drift>, Option<Finding>) {
@@ -28,26 +30,18 @@ pub fn find(fitted: &FittedSelection) -> (Vec<Drift>, Option<Finding>) {
                 low: value - half,
                 high: value + half,
                 unit,
+                in_vehicle: None,
             });
         }
     };
-    for (range, material, scale, unit) in [
-        (TAU, MOVED_TIME_CONSTANT.get(), 1e3, "ms"),
-        (MAX_RATE, MOVED_RATE.get(), 1f64.to_degrees(), "deg/s"),
-        (DRAG, MOVED_DRAG.get(), 1.0, "1/m"),
-        (DISCHARGE..DISCHARGE + 1, MOVED_DISCHARGE.get(), 60.0, "V/min"),
-    ] {
+    for (range, material, scale, unit) in single() {
         for k in range {
             let Some(i) = place(k) else { continue };
             let sd = fitted.covariance[(i, i)].max(0.0).sqrt();
             add(&model.numbers[k].name, unit, model.base[k], point.x[k], sd, material, scale);
         }
     }
-    let v = model.vehicle().battery;
-    let volts = 0.5 * (v.full_v + v.empty_v);
-    let u = 0.2;
-    let gradient = [1.0, u, u * u, u * u * u, volts, u * volts];
-    let at = |x: &[f64]| (0..6).map(|k| gradient[k] * x[THRUST.start + k]).sum::<f64>();
+    let gradient = gradient(model);
     let mut variance = 0.0;
     for a in 0..6 {
         for b in 0..6 {
@@ -56,11 +50,45 @@ pub fn find(fitted: &FittedSelection) -> (Vec<Drift>, Option<Finding>) {
             }
         }
     }
-    let (base, now) = (at(&model.base), at(&point.x));
-    add("thrust over mass at 60 % throttle", "m/s2", base, now, variance.max(0.0).sqrt(), MOVED_THRUST.get(), 1.0);
+    let (base, now) = (thrust(model, &model.base), thrust(model, &point.x));
+    add(THRUST_AT, "m/s2", base, now, variance.max(0.0).sqrt(), MOVED_THRUST.get(), 1.0);
     let moved = !out.is_empty() || voltage_moved(fitted);
     let cause = if moved { cause::find(fitted) } else { None };
     (out, cause)
+}
+
+/// What the thrust over mass is called.
+const THRUST_AT: &str = "thrust over mass at 60 % throttle";
+
+/// Numbers by themselves, the share of them that is worth a word, the scale of their unit, and that.
+fn single() -> [(Range<usize>, f64, f64, &'static str); 4] {
+    [
+        (TAU, MOVED_TIME_CONSTANT.get(), 1e3, "ms"),
+        (MAX_RATE, MOVED_RATE.get(), 1f64.to_degrees(), "deg/s"),
+        (DRAG, MOVED_DRAG.get(), 1.0, "1/m"),
+        (DISCHARGE..DISCHARGE + 1, MOVED_DISCHARGE.get(), 60.0, "V/min"),
+    ]
+}
+
+/// By how much each number of the curve moves the thrust at 60 % throttle and the middle voltage.
+fn gradient(model: &Model) -> [f64; 6] {
+    let v = model.vehicle().battery;
+    let volts = 0.5 * (v.full_v + v.empty_v);
+    let u = 0.2;
+    [1.0, u, u * u, u * u * u, volts, u * volts]
+}
+
+fn thrust(model: &Model, x: &[f64]) -> f64 {
+    gradient(model).iter().zip(&x[THRUST]).map(|(g, c)| g * c).sum()
+}
+
+/// Says of each number what a vehicle with the numbers `x` has in its place.
+pub fn written(drift: &mut [Drift], model: &Model, x: &[f64]) {
+    for moved in drift {
+        let mut all = single().into_iter().flat_map(|(range, _, scale, _)| range.map(move |k| (k, scale)));
+        let own = all.find(|(k, _)| model.numbers[*k].name == moved.parameter);
+        moved.in_vehicle = Some(own.map_or_else(|| thrust(model, x), |(k, scale)| x[k] * scale));
+    }
 }
 
 fn voltage_moved(fitted: &FittedSelection) -> bool {

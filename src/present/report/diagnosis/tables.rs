@@ -98,13 +98,14 @@ pub fn drift(d: &Diagnosis) -> Markup {
         @if !d.drift.is_empty() {
             h2 { "Drift against " (d.base) }
             table {
-                tr { th { "" } th { "was" } th { "is" } th { "95 % interval" } }
+                tr { th { "" } th { "was" } th { "is" } th { "95 % interval" } th { "extended vehicle" } }
                 @for x in &d.drift {
                     @let width = x.high - x.low;
                     tr {
                         td { (x.parameter) @if x.unit != "1" { ", " (unit(x.unit)) } }
                         td { (digits(x.base, width, 2)) } td { (digits(x.value, width, 2)) }
                         td { (digits(x.low, width, 2)) " to " (digits(x.high, width, 2)) }
+                        td { @if let Some(v) = x.in_vehicle { (digits(v, width, 2)) } }
                     }
                 }
             }
