@@ -118,7 +118,7 @@ fn a_file_that_breaks_off_gives_what_came_before() {
 #[test]
 fn a_file_beside_is_a_source() {
     let mapping = "time = { field = 't' }\n[imu]\ngyro = { fields = ['p', 'q', 'r'] }\n\
-                   [odometry]\nsource = '_gps'\noptional = true\nposition = { fields = ['x', 'y', 'z'], scale = [1.0, 1.0, 0.1] }\n";
+                   [odometry]\nsource = '_gps'\nposition = { fields = ['x', 'y', 'z'], scale = [1.0, 1.0, 0.1] }\n";
     let files: [(&str, &[u8]); 3] =
         [("a.csv", b"t,p,q,r\n2,1,2,3\n"), ("a_gps.csv", b"t,x,y,z\n1,1,2,30\n"), ("m.toml", mapping.as_bytes())];
     let open = |folder: &TempDir| {
@@ -356,7 +356,8 @@ fn blackbox_of_other_firmware_and_with_damage() {
 
 #[test]
 fn names_of_columns_alone_are_no_flight() {
-    let mapping = format!("{MAPPING}[odometry]\nsource = '_gps'\nposition = {{ fields = ['n', 'e', 'u'] }}\n");
+    let mapping =
+        format!("{MAPPING}[odometry]\nsource = '_gps'\noptional = true\nposition = {{ fields = ['n', 'e', 'u'] }}\n");
     let error = read("a.csv", b"t,p,q,r,v,mode\n", &mapping).unwrap_err();
     assert!(error.contains("no row below them") && error.contains("to do") && !error.contains("``"), "{error}");
     let error = read("a.csv", b"t,p,q,r,v,mode\n1,,,,,\n", &mapping).unwrap_err();
