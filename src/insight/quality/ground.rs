@@ -1,8 +1,8 @@
 //! When the vehicle does not fly: it is not armed, has landed, or stands still.
 //!
 //! What the flight controller says of itself decides. Without it, stillness that no vehicle in the air has, and rotors
-//! that do far less than carry it, tell. What the odometry sees moving fast is in the air all the same: a fall that
-//! drag holds at its speed feels like standing.
+//! that do far less than carry it, tell. Of the latter, what the odometry sees moving fast is in the air: a fall
+//! that drag holds at its speed does not seem to fall.
 
 use super::{LogFinding, Severity};
 use crate::base::stats::{mean, median};
