@@ -13,6 +13,7 @@ mod identify;
 mod import;
 mod interrupt;
 mod logs;
+mod outputs;
 mod pilot;
 mod predict;
 mod progress;

@@ -5,6 +5,7 @@
 pub mod blackbox;
 pub mod csv;
 pub mod fly;
+mod foreign;
 mod format;
 pub mod instruments;
 pub mod live;
@@ -29,6 +30,8 @@ pub use format::FlightSummary;
 pub use motors::MOTORS;
 pub use open::{Options, open, open_with};
 pub use vehicle::{VehicleKind, VehicleRecord};
+
+use std::path::Path;
 
 /// Numbers over time: row i was measured at `time_s[i]`. NaN stands for what was not measured.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -87,6 +90,15 @@ pub struct Log {
     pub vehicle: VehicleRecord,
     /// What of the file could be read.
     pub readable: Readable,
+}
+
+impl Log {
+    /// What a vehicle from it is called: the name of its file, without folder and endings.
+    pub fn stem(&self) -> String {
+        let name = Path::new(&self.name).file_name().unwrap_or_default().to_string_lossy();
+        let packed = name.strip_suffix(".gz").unwrap_or(&name);
+        Path::new(packed).file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
 }
 
 /// How much of a file could be read.

@@ -7,19 +7,22 @@ use crate::insight::identify::result::Identification;
 use crate::insight::identify::{self as identifying, IdentifyOptions, refuse};
 use crate::insight::predict::{self as predicting, PredictOptions, Prediction};
 use crate::insight::prepare::data::{Data, DataPart};
-use crate::insight::quality::Quality;
+use crate::insight::quality::{Quality, together};
 use crate::model::vehicle::Vehicle;
 
 /// Identifies one vehicle from its checked logs, in the order of flight. `watch` is told each step and the share that
-/// is done, 0 to 1. Fails on a log that contradicts itself, such as a rate that goes against its setpoint, and where
-/// rates or thrust could not be told, unless the options say that a part is enough.
+/// is done, 0 to 1. Fails on a log that contradicts itself, such as a rate that goes against its setpoint, on a flight
+/// that is given twice, on logs whose records are of different vehicles, and where rates or thrust could not be told,
+/// unless the options say that a part is enough.
 pub fn identify(
     logs: &[Quality],
     options: &IdentifyOptions,
     mut watch: impl FnMut(&str, f64),
 ) -> Result<Identification> {
     options.check().map_err(|invalid| BadInput::at("options of identification", invalid))?;
+    together::flights(logs)?;
     refuse::problems(logs)?;
+    refuse::mixed(logs, options)?;
     let found = identifying::identify(logs.to_vec(), options, &mut watch);
     refuse::nothing(&found, options.partial)?;
     Ok(found)

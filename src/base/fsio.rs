@@ -21,10 +21,10 @@ pub struct Reserved {
 }
 
 impl Reserved {
-    /// Makes sure that `path` does not exist and that its folder can be written to.
-    pub fn new(path: &Path) -> Result<Self, BadInput> {
+    /// Makes sure that `path`, which `option` was given, does not exist and that its folder can be written to.
+    pub fn new(path: &Path, option: &str) -> Result<Self, BadInput> {
         if path.exists() {
-            let advice = "choose another path (--out); nothing existing is overwritten";
+            let advice = format!("choose another path ({option}); nothing existing is overwritten");
             return Err(BadInput::new(path.display(), "a file that exists", "a path to a new file", advice));
         }
         match Temporary::new(folder_of(path)) {
@@ -33,14 +33,14 @@ impl Reserved {
                 path.display(),
                 error,
                 "a folder that can be written to",
-                "choose another path (--out)",
+                format!("choose another path ({option})"),
             )),
         }
     }
 
     /// The same for `path`, or the first of `path-2`, `path-3` ... that does not exist when it is written.
-    pub fn numbered(path: &Path) -> Result<Self, BadInput> {
-        Ok(Self { numbered: true, ..Self::new(&free(path))? })
+    pub fn numbered(path: &Path, option: &str) -> Result<Self, BadInput> {
+        Ok(Self { numbered: true, ..Self::new(&free(path), option)? })
     }
 
     /// Writes the file, all at once. Fails if it has come to exist in the meantime.
@@ -185,28 +185,35 @@ fn plain(error: io::Error) -> io::Error {
     inner.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
 }
 
-/// A folder of this name that is new, or empty, and can be written to. Makes those above it as well.
-pub fn new_folder(path: &Path) -> Result<(), BadInput> {
+/// A folder of this name, which `option` was given, that is new, or empty, and can be written to. Makes those above it
+/// as well.
+pub fn new_folder(path: &Path, option: &str) -> Result<(), BadInput> {
+    let another = format!("choose another path ({option})");
     let refuse = |found: String, advice: &str| {
         Err(BadInput::new(path.display(), found, "a folder that is new or empty and can be written to", advice))
     };
     if let Err(error) = std::fs::create_dir_all(path) {
-        return refuse(error.to_string(), "choose another path (--out)");
+        return refuse(error.to_string(), &another);
     }
     match std::fs::read_dir(path).map(|mut entries| entries.next().is_some()) {
         Ok(false) => {}
         Ok(true) => {
-            return refuse(
-                "a folder with files in it".into(),
-                "choose another path (--out); nothing existing is overwritten",
-            );
+            let advice = format!("{another}; nothing existing is overwritten");
+            return refuse("a folder with files in it".into(), &advice);
         }
-        Err(error) => return refuse(error.to_string(), "choose another path (--out)"),
+        Err(error) => return refuse(error.to_string(), &another),
     }
     match Temporary::new(path) {
         Ok(_) => Ok(()),
-        Err(error) => refuse(error.to_string(), "choose another path (--out)"),
+        Err(error) => refuse(error.to_string(), &another),
     }
+}
+
+/// A path that two names of one file share, also of a file that does not exist yet.
+pub fn real(path: &Path) -> PathBuf {
+    let folder = folder_of(path);
+    let folder = folder.canonicalize().or_else(|_| std::path::absolute(folder)).unwrap_or_else(|_| folder.into());
+    path.file_name().map_or(folder.clone(), |name| folder.join(name))
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -223,20 +230,20 @@ mod tests {
         let path = folder.path().join("a");
         write_new(&path, b"first").unwrap();
         assert!(write_new(&path, b"second").is_err());
-        assert!(Reserved::new(&path).unwrap_err().to_string().contains("nothing existing is overwritten"));
+        assert!(Reserved::new(&path, "--out").unwrap_err().to_string().contains("nothing existing is overwritten"));
         assert_eq!(std::fs::read(&path).unwrap(), b"first");
-        let later = Reserved::new(&folder.path().join("b")).unwrap();
+        let later = Reserved::new(&folder.path().join("b"), "--out").unwrap();
         write_new(&folder.path().join("b"), b"in the meantime").unwrap();
         assert!(later.write(b"late").is_err());
-        assert!(new_folder(folder.path()).unwrap_err().to_string().contains("files in it"));
+        assert!(new_folder(folder.path(), "--out").unwrap_err().to_string().contains("files in it"));
     }
 
     #[test]
     fn a_reservation_leaves_nothing_behind() {
         let folder = tempfile::tempdir().unwrap();
-        drop(Reserved::new(&folder.path().join("a")).unwrap());
+        drop(Reserved::new(&folder.path().join("a"), "--out").unwrap());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-        let open = Reserved::new(&folder.path().join("a")).unwrap();
+        let open = Reserved::new(&folder.path().join("a"), "--out").unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
         // Windows removes no file that is open.
         if cfg!(unix) {
@@ -244,15 +251,15 @@ mod tests {
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         }
         drop(open);
-        assert!(new_folder(&folder.path().join("x/y")).is_ok());
-        assert!(Reserved::new(&folder.path().join("none/a")).is_err());
+        assert!(new_folder(&folder.path().join("x/y"), "--out").is_ok());
+        assert!(Reserved::new(&folder.path().join("none/a"), "--out").is_err());
     }
 
     #[test]
     fn several_that_want_one_name_get_one_each() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("e.json");
-        let reserved: Vec<_> = (0..4).map(|_| Reserved::numbered(&path).unwrap()).collect();
+        let reserved: Vec<_> = (0..4).map(|_| Reserved::numbered(&path, "--out").unwrap()).collect();
         let names: Vec<_> = reserved.into_iter().map(|r| r.write(b"x").unwrap()).collect();
         let names: Vec<_> = names.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
         assert_eq!(names, ["e.json", "e-2.json", "e-3.json", "e-4.json"]);
@@ -266,7 +273,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let to = folder.path().join("gone");
         std::fs::create_dir(&to).unwrap();
-        let reserved = Reserved::new(&to.join("a.json")).unwrap();
+        let reserved = Reserved::new(&to.join("a.json"), "--out").unwrap();
         std::fs::remove_dir_all(&to).unwrap();
         let text = reserved.write(b"x").unwrap_err().to_string();
         assert!(text.contains("a.json") && !text.contains(PREFIX), "{text}");

@@ -15,7 +15,7 @@ use crate::insight::diagnose::judgement::diagnosis::Verdict;
 use crate::insight::diagnose::{Diagnosed, diagnose};
 use crate::insight::identify::{self, identify};
 use crate::insight::plan::next_flight;
-use crate::insight::quality::Quality;
+use crate::insight::quality::{Quality, together};
 use crate::model::vehicle::Vehicle;
 use crate::present::run;
 use indicatif::ProgressBar;
@@ -77,11 +77,12 @@ pub struct Args {
     /// Which flight of a blackbox file, counted from 1 [default: the longest]
     #[arg(long, value_name = "N")]
     flight: Option<usize>,
-    /// Go on where a log contradicts itself, such as a rate that goes against its setpoint
+    /// Go on where a log contradicts itself, such as a rate that goes against its setpoint, or where logs contradict
+    /// each other about their vehicle
     #[arg(long)]
     despite_problems: bool,
-    /// Without --vehicle: the vehicle that lends what the logs cannot tell
-    #[arg(long, value_name = "NAME|FILE", default_value = "seed_class")]
+    /// In place of --vehicle: the vehicle that lends what the logs cannot tell
+    #[arg(long, value_name = "NAME|FILE", default_value = "seed_class", conflicts_with = "vehicle")]
     base: String,
     #[command(flatten)]
     thresholds: Thresholds,
@@ -120,11 +121,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let given = args.vehicle.as_deref().map(Vehicle::load).transpose()?;
     check_racing(args)?;
     let bar = progress::bar();
-    let all: Vec<PathBuf> = args.against.iter().chain(&args.logs).cloned().collect();
-    let mut before = logs::read(&all, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
-    if !args.despite_problems {
-        identify::refuse::problems(&before)?;
-    }
+    let mut before = read(args, &bar)?;
     let damaged = logs::damaged(&before);
     let logs = before.split_off(args.against.len());
     // What changed is told against what the vehicle was.
@@ -133,7 +130,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         bar.set_position((100.0 * share) as u64);
         bar.set_message(step.to_string());
     };
-    let mut changes = changes::find(before, &logs, &base, &mut watch)?;
+    let mut changes = changes::find(before, &logs, &base, &mut watch);
     let diagnosed = diagnose(logs, &base, &mut watch);
     changes.iter_mut().for_each(|changes| changes.confirm(&diagnosed.diagnosis));
     let diagnosed = Diagnosed { changes, ..diagnosed };
@@ -168,6 +165,28 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     })
 }
 
+/// The logs, the earlier ones first; fails where they cannot be taken together.
+fn read(args: &Args, bar: &ProgressBar) -> anyhow::Result<Vec<Quality>> {
+    let all: Vec<PathBuf> = args.against.iter().chain(&args.logs).cloned().collect();
+    let all = logs::read(&all, Options { mapping: args.mapping.as_deref(), flight: args.flight }, bar)?;
+    together::flights(&all)?;
+    let (before, after) = all.split_at(args.against.len());
+    if !args.despite_problems {
+        identify::refuse::problems(&all)?;
+        together::kinds(&all)?;
+        // Between the sets it may be what changed.
+        for set in [before, after] {
+            together::masses(set)?;
+            // A vehicle that is given says its own.
+            if args.vehicle.is_none() {
+                together::full_rates(set)?;
+            }
+        }
+    }
+    changes::check(before, after)?;
+    Ok(all)
+}
+
 /// The extended vehicle that `option` asks for.
 fn extended<'a>(diagnosed: &'a Diagnosed, option: &str) -> Result<&'a Vehicle, BadInput> {
     let none = |why: &String| {
@@ -185,12 +204,14 @@ fn check_racing(args: &Args) -> Result<(), BadInput> {
     }
     let Some(minutes) = args.retrain else { return Ok(()) };
     Invalid::unless_positive("--retrain", minutes, "").map_err(|invalid| BadInput::at("command line", invalid))?;
-    fsio::new_folder(&args.retrain_out)
+    fsio::new_folder(&args.retrain_out, "--retrain-out")
 }
 
 /// The vehicle, where only the logs say what it is.
 fn identified(args: &Args, logs: &[Quality], bar: &ProgressBar) -> Result<Vehicle, BadInput> {
     let options = identify::IdentifyOptions::new(Vehicle::load(&args.base)?);
     let found = identify(logs.to_vec(), &options, &mut |step, _| bar.set_message(format!("identifying: {step}")));
-    Ok(found.vehicle)
+    // The later flights are what the diagnosis is of.
+    let name = logs.get(args.against.len()).map_or(found.vehicle.name, |quality| quality.log.stem());
+    Ok(Vehicle { name, ..found.vehicle })
 }

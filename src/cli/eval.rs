@@ -171,7 +171,10 @@ fn judge(require: Option<f64>, report: &Report) -> CommandEnd {
 
 /// The file that was asked for, or `default`, numbered where others have that name: evaluations may run side by side.
 fn reserve(args: &Args, default: impl Fn() -> PathBuf) -> Result<Reserved, BadInput> {
-    args.out.as_deref().map_or_else(|| Reserved::numbered(&default()), Reserved::new)
+    match &args.out {
+        Some(path) => Reserved::new(path, "--out"),
+        None => Reserved::numbered(&default(), "--out"),
+    }
 }
 
 /// A name that says what was measured.

@@ -68,7 +68,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let (format, name) = args.format.format();
     let files = exported.files(format)?;
     let folder = args.out.clone().unwrap_or_else(|| default_folder(&found, name));
-    fsio::new_folder(&folder)?;
+    fsio::new_folder(&folder, "--out")?;
     for (name, bytes) in &files {
         let path = folder.join(name);
         if let Some(inner) = path.parent() {

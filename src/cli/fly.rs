@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         return Err(BadInput::new("racer fly", "nothing to fly", "a policy, or the pilot", advice).into());
     }
     let sensors = SensorConfig::load(&args.sensors)?;
-    let file = Reserved::new(&args.out)?;
+    let file = Reserved::new(&args.out, "--out")?;
     let flown = match &args.policy {
         Some(policy) => fly_policy(args, policy, &sensors)?,
         None => fly_pilot(args, &sensors)?,

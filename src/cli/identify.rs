@@ -1,14 +1,14 @@
 //! `racer identify`: a vehicle from its flights.
 
-use super::{CommandEnd, columns, logs, progress, tell};
+use super::{CommandEnd, columns, logs, outputs, progress, tell};
 use crate::base::check::{BadInput, Check};
 use crate::base::encode;
-use crate::base::fsio::Reserved;
 use crate::flight::Options;
 use crate::insight::identify::document::{CheckedLog, IdentificationDocument};
 use crate::insight::identify::estimate::Estimated;
 use crate::insight::identify::result::Identification;
 use crate::insight::identify::{FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ, identify, refuse};
+use crate::insight::quality::together;
 use crate::model::vehicle::identified::ThrustSource;
 use crate::model::vehicle::{AXES, Vehicle};
 use crate::present::report;
@@ -36,7 +36,8 @@ pub struct Args {
     /// Which flight of a blackbox file, counted from 1 [default: the longest]
     #[arg(long, value_name = "N")]
     flight: Option<usize>,
-    /// Go on where a log contradicts itself, such as a rate that goes against its setpoint
+    /// Go on where a log contradicts itself, such as a rate that goes against its setpoint, or where logs contradict
+    /// each other about their vehicle
     #[arg(long)]
     despite_problems: bool,
     /// Write a vehicle even where the logs tell no rates or no thrust: the base vehicle lends them
@@ -94,13 +95,18 @@ fn parse_rates(text: &str) -> Result<[f64; 3], String> {
 /// Reads, checks, identifies, writes, prints.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let options = options(args)?;
-    let reserve = |path: &Option<PathBuf>| path.as_deref().map(Reserved::new).transpose();
-    let (out, json, page) = (Reserved::new(&args.out)?, reserve(&args.json)?, reserve(&args.report)?);
-    let validated = reserve(&args.validated)?;
+    let [out, json, page, validated] = outputs::reserve([
+        ("--out", Some(&args.out)),
+        ("--json", args.json.as_deref()),
+        ("--report", args.report.as_deref()),
+        ("--validated", args.validated.as_deref()),
+    ])?;
     let bar = progress::bar();
     let checked = logs::read(&args.logs, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
+    together::flights(&checked)?;
     if !args.despite_problems {
         refuse::problems(&checked)?;
+        refuse::mixed(&checked, &options)?;
     }
     let mut found = identify(checked.clone(), &options, &mut |step, share| {
         bar.set_position((100.0 * share) as u64);
@@ -131,8 +137,10 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         let written = validated.write(encode::toml("the vehicle", &found.validated)?.as_bytes())?;
         tell(&format!("the vehicle that the figures are of in {}", written.display()));
     }
-    let written = out.write(encode::toml("the vehicle", &found.vehicle)?.as_bytes())?;
-    tell(&format!("vehicle in {0}: racer train --vehicle {0}", written.display()));
+    if let Some(out) = out {
+        let written = out.write(encode::toml("the vehicle", &found.vehicle)?.as_bytes())?;
+        tell(&format!("vehicle in {0}: racer train --vehicle {0}", written.display()));
+    }
     Ok(if logs::damaged(&checked) { CommandEnd::Damaged } else { CommandEnd::Done })
 }
 

@@ -68,7 +68,7 @@ Exit code 3: the file was damaged; what could be read of it was written.";
 
 /// Reads, says what was found, writes.
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
-    let file = Reserved::new(&args.out)?;
+    let file = Reserved::new(&args.out, "--out")?;
     let options = Options { mapping: args.mapping.as_deref(), flight: args.flight };
     let opened = flight::open_with(&args.file, options)?;
     opened.remarks.iter().for_each(|remark| tell(remark));

@@ -85,7 +85,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         arm: args.arm.map(usize::from),
     })?;
     let Some(snapshot) = policy.transpose()? else { unreachable!("asked for by the arguments") };
-    let file = args.log.as_deref().map(Reserved::new).transpose()?;
+    let file = args.log.as_deref().map(|path| Reserved::new(path, "--log")).transpose()?;
     let range = snapshot.ranges();
     let Snapshot { network, about } = snapshot;
     let lead = if args.arm.is_some() { LEAD } else { 0 };

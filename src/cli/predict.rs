@@ -9,6 +9,7 @@ use crate::flight::Options;
 use crate::insight::identify::{FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ};
 use crate::insight::predict::{PredictOptions, Prediction, predict};
 use crate::insight::prepare::data::{Data, DataPart};
+use crate::insight::quality::together;
 use crate::model::vehicle::Vehicle;
 use crate::present::predict::{csv, mcap};
 use serde::Serialize;
@@ -96,6 +97,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let options = options(args)?;
     let bar = progress::bar();
     let checked = logs::read(&args.logs, Options { mapping: args.mapping.as_deref(), flight: args.flight }, &bar)?;
+    together::flights(&checked)?;
     bar.set_message("predicting");
     let damaged = logs::damaged(&checked);
     let data = Data::new(checked);
@@ -153,7 +155,7 @@ fn output(path: &Path) -> std::result::Result<(Encode, Reserved), BadInput> {
             return Err(BadInput::new("--out", path.display(), "a name that ends in .csv or .mcap", advice));
         }
     };
-    Ok((encode, Reserved::new(path)?))
+    Ok((encode, Reserved::new(path, "--out")?))
 }
 
 fn json(prediction: &Prediction) -> Result<String> {

@@ -72,7 +72,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let log = path.is_file() && path.extension().is_none_or(|extension| extension != "safetensors");
     let (shown, beside, whole) = if log { recorded(args, path)? } else { flown(args)? };
     let folder = args.out.clone().unwrap_or_else(|| run::free(&beside));
-    fsio::new_folder(&folder)?;
+    fsio::new_folder(&folder, "--out")?;
     let layout = serde_json::to_string_pretty(&replay::layout())?;
     for (name, bytes) in [
         (PAGE, report::replay::page(&shown).into_bytes()),

@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let of = folder(&args.folder)?;
     let drawn = draw(&of, args.beside.as_deref().map(folder).transpose()?.as_deref())?;
     let out = args.out.clone().unwrap_or_else(|| free(&of.join("report")));
-    new_folder(&out)?;
+    new_folder(&out, "--out")?;
     let write = |name: &str, text: &str| {
         let path = out.join(name);
         write_new(&path, text.as_bytes()).map_err(Error::write(&path))

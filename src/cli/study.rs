@@ -93,7 +93,7 @@ pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
         super::print(&list(&planned, &folder, shard))?;
         return Ok(CommandEnd::Done);
     }
-    let json = args.json.as_deref().map(Reserved::new).transpose()?;
+    let json = args.json.as_deref().map(|path| Reserved::new(path, "--json")).transpose()?;
     folder.begin(&planned.plan, document.text())?;
     if args.slurm.asked() {
         return submit(args, &out, &planned, &folder, threads);

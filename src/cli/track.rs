@@ -87,7 +87,7 @@ struct Lap {
 pub fn run(args: &Args) -> anyhow::Result<CommandEnd> {
     let TrackCommand::Show(show) = &args.command;
     let (track, vehicle) = (Track::load(&show.track)?, Vehicle::load(&show.vehicle)?);
-    let file = show.svg.as_deref().map(Reserved::new).transpose()?;
+    let file = show.svg.as_deref().map(|path| Reserved::new(path, "--svg")).transpose()?;
     let battery = &vehicle.battery;
     let laps = [("fresh", battery.full_v), ("half", battery.at(0.5))];
     let laps = laps.map(|(name, voltage)| (name, voltage, reference::lap(&track, &vehicle, voltage)));

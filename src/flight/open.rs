@@ -4,11 +4,13 @@ use super::Log;
 use super::blackbox::Blackbox;
 use super::blackbox::decoded::Decoded;
 use super::csv::files::Csv;
+use super::foreign;
 use super::format::{Content, FlightSummary, Format, LogFile};
 use super::mapping::Mapping;
 use super::mcap::Mcap;
 use super::ulog::ULog;
 use crate::base::check::BadInput;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// All formats. The first that recognises a file reads it, and CSV takes any text.
@@ -72,24 +74,35 @@ fn read(path: &Path) -> Result<Vec<u8>, BadInput> {
         let advice = "name a file in it, such as the .mcap of a rosbag2 recording";
         return Err(BadInput::new(path.display(), "a folder", "a flight log", advice));
     }
-    std::fs::read(path).map_err(|error| BadInput::new(path.display(), error, "a flight log", ""))
+    std::fs::read(path).map_err(|error| {
+        let advice = match error.kind() {
+            ErrorKind::NotFound => "is its path spelled right, from the folder that racer is run in?",
+            _ => "see that it can be read",
+        };
+        BadInput::new(path.display(), error, "a flight log", advice)
+    })
 }
 
 /// The format of a file.
 fn recognise(file: &LogFile) -> Result<&'static dyn Format, BadInput> {
-    /// Logs that others convert: how they start, what they are, what to do.
-    const FOREIGN: [(&[u8], &str, &str); 2] = [
-        (b"SQLite format 3", "an SQLite database", "convert a rosbag2 recording with `ros2 bag convert` to MCAP"),
-        (b"#ROSBAG", "a ROS 1 bag", "convert it to MCAP, for example with `mcap convert`"),
-    ];
-    let foreign = FOREIGN.iter().find(|(start, ..)| file.bytes.starts_with(start));
-    let known = FORMATS.into_iter().find(|format| format.recognises(file));
-    let (found, advice) = match (foreign, known) {
-        _ if file.bytes.is_empty() => ("an empty file", ""),
-        (Some((_, found, advice)), _) => (*found, *advice),
-        (None, Some(format)) => return Ok(format),
-        (None, None) => ("none of them", ""),
-    };
     let names = FORMATS.map(|format| format.name()).join(", ");
-    Err(BadInput::new(file.name, found, &format!("one of {names}"), advice))
+    let refuse = |found: &str, advice: &str| {
+        Err(BadInput::new(file.name, found, &format!("a flight log: one of {names}"), advice))
+    };
+    if file.bytes.is_empty() {
+        return refuse("an empty file", "was it copied whole? Give another");
+    }
+    if let Some((found, advice)) = foreign::converted(file) {
+        return refuse(found, advice);
+    }
+    // CSV takes any text.
+    let [sure @ .., any] = FORMATS;
+    if let Some(format) = sure.into_iter().find(|format| format.recognises(file)) {
+        return Ok(format);
+    }
+    match foreign::text(file) {
+        Some((found, advice)) => refuse(&format!("{found}, no flight log"), advice),
+        None if any.recognises(file) => Ok(any),
+        None => refuse("none of them", "convert it to one of them"),
+    }
 }

@@ -9,6 +9,7 @@ mod offset;
 mod outliers;
 mod signs;
 mod timing;
+pub mod together;
 mod tumbling;
 
 pub use coverage::ParameterCoverage;

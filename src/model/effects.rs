@@ -5,6 +5,7 @@
 //! generic over [`Real`]. Simulator and diagnosis call the same equation at the same place of
 //! [`crate::model::dynamics::extended`]. To add an effect, write its file and its line in the list below.
 
+mod asked;
 mod card;
 mod dependence;
 mod quantity;

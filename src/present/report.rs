@@ -21,7 +21,7 @@ pub mod spread;
 pub mod study;
 pub mod training;
 
-pub use page::digits;
+pub use page::{digits, range};
 
 use crate::base::error::Error;
 

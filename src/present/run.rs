@@ -61,9 +61,9 @@ impl Run {
             Some(out) => out.to_path_buf(),
             None => free(&Path::new(RUNS).join(format!("{}-{}", stamp(SystemTime::now()), plain(name)))),
         };
-        fsio::new_folder(&folder)?;
-        fsio::new_folder(&folder.join(SNAPSHOTS))?;
-        fsio::new_folder(&folder.join(TENSORBOARD))?;
+        fsio::new_folder(&folder, "--out")?;
+        fsio::new_folder(&folder.join(SNAPSHOTS), "--out")?;
+        fsio::new_folder(&folder.join(TENSORBOARD), "--out")?;
         Ok(Self { folder })
     }
 

@@ -1,4 +1,4 @@
-//! The hidden options of `racer diagnose` that list and scale its criteria.
+//! The options of `racer diagnose` that list and scale its criteria.
 
 use crate::support::racer;
 
@@ -10,6 +10,8 @@ fn every_criterion_is_listed_with_its_source() {
     let mut reader = csv::Reader::from_reader(ran.out.as_bytes());
     let rows: Vec<_> = reader.records().map(Result::unwrap).collect();
     assert!(rows.iter().any(|row| &row[0] == "LEAST_GAIN" && &row[1] == "30"), "{}", ran.out);
+    let help = racer(folder.path(), &["diagnose", "--help"]).out;
+    assert!(help.contains("--criteria") && !help.contains("--scale-criterion"), "{help}");
     assert!(rows.iter().all(|row| ["theory", "assumed"].contains(&&row[3]) && !row[4].is_empty()), "{}", ran.out);
 }
 

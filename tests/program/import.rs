@@ -76,7 +76,7 @@ fn what_is_wrong_is_named() {
         (b"t,p,q,r,v\n0,1,2,3\n0,1,2,3,4\n", MAPPING, ["a.csv:2", "4 cells", "5"]),
         (b"t,p,p,r,v\n", MAPPING, ["`p` twice", "names the columns", "CSV"]),
         (b"t,p,q,r,v\n,1,2,3,4\n", MAPPING, ["row 1 of `imu`", "NaN", "time"]),
-        (b"t,p,q,r,v\n", MAPPING, ["nothing", "mapping", "values"]),
+        (b"t,p,q,r,v\n", MAPPING, ["no row below them", "a row for each time", "to do"]),
         (rows, "[imu]\ngyro = { fields = ['p', 'q'] }", ["imu.gyro.fields", "2 of them", "3 columns"]),
         (rows, "[imu]\ngyro = { fields = ['p', 'q', 'r'], unit = 'deg' }", ["imu.gyro.unit", "deg", "deg/s"]),
         (rows, "[imu]\ngiro = { fields = ['p', 'q', 'r'] }", ["imu.giro", "unknown", "gyro"]),
@@ -352,4 +352,37 @@ fn blackbox_of_other_firmware_and_with_damage() {
     let opened = open_bytes("a.bbl", &file("Betaflight 4.3.1", &damaged), Options::default()).unwrap();
     assert_eq!(opened.log.readable, Readable::Whole);
     assert!(opened.remarks[0].contains("11 bytes") && opened.remarks[0].contains("1 frames"), "{:?}", opened.remarks);
+}
+
+#[test]
+fn names_of_columns_alone_are_no_flight() {
+    let mapping =
+        format!("{MAPPING}[odometry]\nsource = '_gps'\noptional = true\nposition = {{ fields = ['n', 'e', 'u'] }}\n");
+    let error = read("a.csv", b"t,p,q,r,v,mode\n", &mapping).unwrap_err();
+    assert!(error.contains("no row below them") && error.contains("to do") && !error.contains("``"), "{error}");
+    let error = read("a.csv", b"t,p,q,r,v,mode\n1,,,,,\n", &mapping).unwrap_err();
+    assert!(error.contains("values in its own columns or `_gps`"), "{error}");
+}
+
+#[test]
+fn what_is_no_flight_log_is_called_what_it_is() {
+    let vehicle = std::fs::read("configs/vehicles/seed_class.toml").unwrap();
+    let track = std::fs::read("tracks/square.toml").unwrap();
+    let readme = std::fs::read("README.md").unwrap();
+    for (name, bytes, said) in [
+        ("v.toml", &vehicle[..], "a vehicle file, no flight log"),
+        ("v", &vehicle[..], "--vehicle"),
+        ("track.toml", &track[..], "a TOML file, no flight log"),
+        ("page.html", b"<!DOCTYPE html><html></html>", "a page, no flight log"),
+        ("page.csv", b"\n<html><body>a,b</body></html>", "a page, no flight log"),
+        ("README.md", &readme[..], "no flight log"),
+        ("a.json", b"{\"a\": [1, 2]}", "a JSON file, no flight log"),
+    ] {
+        let folder = folder(&[(name, bytes)]);
+        let ran = racer(folder.path(), &["check", name]);
+        assert!(ran.code == 2 && ran.err.contains(said) && ran.err.contains("to do"), "{name}: {}", ran.err);
+        assert!(!ran.err.contains("--mapping"), "{name}: {}", ran.err);
+    }
+    let error = flight::open("nowhere.csv".as_ref(), None).unwrap_err().to_string();
+    assert!(error.contains("nowhere.csv") && error.contains("spelled right"), "{error}");
 }

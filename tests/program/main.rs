@@ -1,11 +1,13 @@
 //! The program as its users meet it: what they type, what is printed where, what is left on disk.
 
 mod against;
+mod check;
 mod cli;
 mod criteria;
 mod diagnose_report;
 mod examples;
 mod export;
+mod extend;
 mod faults;
 mod identify;
 mod import;
@@ -14,6 +16,7 @@ mod library;
 mod pilot;
 mod plan;
 mod predict;
+mod refused;
 #[cfg(unix)]
 mod rehearse;
 mod show;

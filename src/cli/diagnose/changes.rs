@@ -2,7 +2,6 @@
 
 use super::text::interval;
 use crate::base::check::BadInput;
-use crate::flight::VehicleRecord;
 use crate::flight::spans::length;
 use crate::insight::Watch;
 use crate::insight::criteria::flown::LEAST_FLIGHT_S;
@@ -12,48 +11,18 @@ use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
 use crate::present::report::digits;
 
-/// What changed from the flights `before` to `after`; none where there are no earlier ones.
-pub fn find(
-    before: Vec<Quality>,
-    after: &[Quality],
-    base: &Vehicle,
-    watch: Watch,
-) -> Result<Option<Changes>, BadInput> {
-    if before.is_empty() {
-        return Ok(None);
-    }
-    for quality in before.iter().chain(after) {
-        let seconds = length(&quality.usable);
-        if seconds < LEAST_FLIGHT_S.get() {
-            let found = format!("{}: {seconds:.0} s of usable flight", quality.log.name);
-            let expected = &format!("{:.0} s of flight in every log", LEAST_FLIGHT_S.get());
-            return Err(BadInput::new("--against", found, expected, "`racer check` says what is left out, and why"));
-        }
-    }
-    for (earlier, later) in before.iter().flat_map(|b| after.iter().map(move |a| (b, a))) {
-        comparable(earlier, later)?;
-    }
-    Ok(Some(compare(before, after.to_vec(), base, watch)))
+/// Fails where too little was flown on either side; known before the vehicle is identified, which takes its time.
+pub fn check(before: &[Quality], after: &[Quality]) -> Result<(), BadInput> {
+    let short = |quality: &&Quality| length(&quality.usable) < LEAST_FLIGHT_S.get();
+    let Some(quality) = before.iter().chain(after).find(short).filter(|_| !before.is_empty()) else { return Ok(()) };
+    let found = format!("{}: {:.0} s of usable flight", quality.log.name, length(&quality.usable));
+    let expected = &format!("{:.0} s of flight in every log", LEAST_FLIGHT_S.get());
+    Err(BadInput::new("--against", found, expected, "`racer check` says what is left out, and why"))
 }
 
-/// Fails where two logs are one, or of two vehicles.
-fn comparable(earlier: &Quality, later: &Quality) -> Result<(), BadInput> {
-    let (a, b) = (&earlier.log, &later.log);
-    let wrong = |found: String, expected, advice| Err(BadInput::new("--against", found, expected, advice));
-    if a.imu == b.imu {
-        let advice = "give the later flights first, and each earlier one after its own --against";
-        return wrong(format!("the same flight as {}: {}", b.name, a.name), "another flight", advice);
-    }
-    if a.vehicle.kind != b.vehicle.kind || a.vehicle.rotors != b.vehicle.rotors {
-        let kind = |v: &VehicleRecord| match (v.kind, v.rotors) {
-            (Some(kind), Some(rotors)) => format!("{kind:?} with {rotors} rotors").to_lowercase(),
-            (Some(kind), None) => format!("{kind:?}").to_lowercase(),
-            _ => "a vehicle of no known kind".into(),
-        };
-        let found = format!("{} of {}, and {} of {}", b.name, kind(&b.vehicle), a.name, kind(&a.vehicle));
-        return wrong(found, "flights of one vehicle", "compare flights of the same vehicle");
-    }
-    Ok(())
+/// What changed from the flights `before` to `after`; none where there are no earlier ones.
+pub fn find(before: Vec<Quality>, after: &[Quality], base: &Vehicle, watch: Watch) -> Option<Changes> {
+    (!before.is_empty()).then(|| compare(before, after.to_vec(), base, watch))
 }
 
 /// The answer, each change, what both show, and what would have shown.

@@ -4,7 +4,7 @@ use super::Args;
 use crate::base::check::BadInput;
 use crate::base::encode;
 use crate::base::fsio::{self, Reserved};
-use crate::cli::tell;
+use crate::cli::{outputs, tell};
 use crate::insight::diagnose::Diagnosed;
 use crate::insight::diagnose::against::Changes;
 use crate::insight::diagnose::judgement::diagnosis::Diagnosis;
@@ -27,11 +27,18 @@ pub struct OutputFiles<'a> {
 
 impl<'a> OutputFiles<'a> {
     pub fn new(args: &'a Args) -> Result<Self, BadInput> {
-        let reserve = |path: &Option<_>| path.as_deref().map(Reserved::new).transpose();
-        let (json, vehicle, page) = (reserve(&args.json)?, reserve(&args.extend)?, reserve(&args.report)?);
-        let plan = reserve(&args.plan_out)?;
-        args.svg.as_deref().map(fsio::new_folder).transpose()?;
-        Ok(Self { json, vehicle, page, figures: args.svg.as_deref(), plan })
+        let files = [
+            ("--json", args.json.as_deref()),
+            ("--extend", args.extend.as_deref()),
+            ("--report", args.report.as_deref()),
+            ("--plan-out", args.plan_out.as_deref()),
+        ];
+        let figures = args.svg.as_deref();
+        let trained = args.retrain.is_some().then_some(&*args.retrain_out);
+        outputs::distinct(&[&files[..], &[("--svg", figures), ("--retrain-out", trained)]].concat())?;
+        let [json, vehicle, page, plan] = outputs::reserve(files)?;
+        figures.map(|folder| fsio::new_folder(folder, "--svg")).transpose()?;
+        Ok(Self { json, vehicle, page, figures, plan })
     }
 
     /// Writes them; `next` is the planned flight, where one was asked for.

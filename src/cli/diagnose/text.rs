@@ -5,7 +5,7 @@ use crate::insight::diagnose::gain;
 use crate::insight::diagnose::judgement::diagnosis::Diagnosis;
 use crate::insight::diagnose::judgement::finding::{Finding, Status};
 use crate::insight::diagnose::selection::accident::LeftOut;
-use crate::present::report::digits;
+use crate::present::report::{digits, range};
 
 /// What is wrong, why, what it is worth, what to fly next.
 pub fn text(d: &Diagnosis) -> String {
@@ -140,7 +140,7 @@ pub fn plan(d: &Diagnosis) -> String {
             format!("{:.2e}", p.smallest),
             format!("{:.2e}", p.told_apart),
             p.nearest.unwrap_or("-").to_string(),
-            format!("{} to {}", p.typical[0], p.typical[1]),
+            range(p.typical),
             p.unit.to_string(),
         ]
     });

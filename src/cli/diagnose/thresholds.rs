@@ -1,13 +1,14 @@
-//! What measures the thresholds of a diagnosis: they are listed, and scaled. Not for users, and not in the help.
+//! The thresholds of a diagnosis: listed for everybody, and scaled for who measures them, which is not in the help.
 
 use crate::base::check::BadInput;
 use crate::insight::criteria::{self, Source};
 
-/// Hidden options.
+/// Options about them.
 #[derive(Debug, clap::Args)]
 pub struct Thresholds {
-    /// Only list every criterion as CSV: name, value, question, where it comes from, what it decides
-    #[arg(long, hide = true)]
+    /// Only list every threshold of checks and diagnoses as CSV: name, value, question, where it comes from, what it
+    /// decides
+    #[arg(long)]
     pub criteria: bool,
     /// Scale a criterion for this diagnosis
     #[arg(long, hide = true, value_name = "NAME=FACTOR")]

@@ -2,8 +2,7 @@
 
 mod start;
 
-use super::super::{CommandEnd, interrupt, print, tell};
-use crate::base::fsio::Reserved;
+use super::super::{CommandEnd, interrupt, outputs, print, tell};
 use crate::base::lane::Level;
 use crate::base::stats::mean;
 use crate::flight::fly;
@@ -103,8 +102,7 @@ pub fn run(args: &Args, asked: Asked) -> anyhow::Result<CommandEnd> {
         (None, Some(policy)) => policy.about.vehicle.clone(),
         (None, None) => Vehicle::load(&own)?,
     };
-    let [log, blackbox] = [asked.log, args.blackbox.as_deref()].map(|path| path.map(Reserved::new).transpose());
-    let (log, blackbox) = (log?, blackbox?);
+    let [log, blackbox] = outputs::reserve([("--log", asked.log), ("--blackbox", args.blackbox.as_deref())])?;
     interrupt::watch("ending the flight; Ctrl-C again ends at once");
     let full_rate = match &asked.policy {
         Some(policy) => Surroundings::of(&policy.about.track, &policy.about.vehicle).full_rate,

@@ -123,13 +123,17 @@ impl Sources<'_> {
         Ok(stream)
     }
 
+    /// The complaint where no stream has a row.
     fn nothing(&self) -> BadInput {
-        let wanted: Vec<_> = self.mapping.sources().into_iter().map(|source| format!("`{source}`")).collect();
+        if self.tables.tables.values().all(|table| table.rows() == 0) && self.tables.tables.contains_key("") {
+            let advice = "did the recording break off, or its conversion? Record or convert it again, or give another";
+            let found = "names of columns, and no row below them";
+            return BadInput::new(self.name, found, "a row for each time of the flight", advice);
+        }
+        let place = |source: &&str| if source.is_empty() { "its own columns".into() } else { format!("`{source}`") };
+        let wanted: Vec<String> = self.mapping.sources().iter().map(place).collect();
         let known: Vec<&str> = self.tables.tables.keys().map(String::as_str).collect();
-        let expected = match wanted.as_slice() {
-            [one] if one == "``" => "rows with values".into(),
-            _ => format!("values in any of {}", wanted.join(", ")),
-        };
+        let expected = format!("values in {}", wanted.join(" or "));
         let advice = format!("{}; `racer import --help` says how to write a mapping", advice("", &known));
         BadInput::new(self.name, "nothing of what the mapping names", &expected, advice)
     }

@@ -14,6 +14,9 @@ criteria! {
     /// Offset that is left, s.
     OFFSET_LEFT_S = 0.003, Assumed("about a sample of the odometry");
 
+    /// Share by which masses and full-stick rates that logs of one vehicle say may differ.
+    SAME_RECORD = 0.02, Assumed("they come from one weighing and one configuration, rounded");
+
     /// Samples without which nothing is said about signs and frames.
     FRAME_SAMPLES = 100.0, Assumed("correlations of fewer are chance");
     /// Correlation against its setpoint that is a wrong sign.

@@ -34,6 +34,8 @@ criteria! {
     STILL_RATE = 0.3, Assumed("a hover turns more in a tenth of a second, a gyro's bias is less");
     /// Distance of the specific force from gravity below which it may stand still, m/s2.
     STILL_FORCE = 1.0, Assumed("accelerometers are off by less");
+    /// Speed of the odometry from which it does not stand still, m/s.
+    SLIDING_SPEED = 2.0, Assumed("estimates drift by some 0.3 m/s on the ground; without thrust that is soon exceeded");
     /// Share of the usual effort of the rotors below which they do not carry the vehicle.
     IDLE_EFFORT = 0.6, Assumed("thrust goes with about the square of the effort: a third of the weight");
     /// Change of the rate over a second, as a standard deviation, below which it rests, rad/s.

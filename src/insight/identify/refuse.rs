@@ -1,18 +1,37 @@
 //! What is refused: logs that would give a wrong vehicle, and results that are none.
 
+use super::IdentifyOptions;
 use super::result::Identification;
 use crate::base::check::{BadInput, Check};
 use crate::base::error::{Error, Result};
-use crate::insight::quality::Quality;
+use crate::insight::quality::{Quality, together};
 
 /// Fails where a log contradicts itself, such as a rate that goes against its setpoint.
 pub fn problems(logs: &[Quality]) -> Result<(), BadInput> {
     for quality in logs {
         if let Some(finding) = quality.problem() {
             let expected = "a log without problems";
-            let advice = format!("{}, or use the log all the same with --despite-problems", finding.so);
+            // Nothing is left to go on with.
+            let advice = if quality.usable.is_empty() {
+                "give another log, with more of the flight: `racer check` says what of this one is left out, and why"
+                    .into()
+            } else {
+                format!("mend the log or its mapping, or go on with --despite-problems. As it is: {}", finding.so)
+            };
             return Err(BadInput::new(&quality.log.name, &finding.what, expected, advice));
         }
+    }
+    Ok(())
+}
+
+/// Fails where the logs' records are of different vehicles. What the options say, the records need not.
+pub fn mixed(logs: &[Quality], options: &IdentifyOptions) -> Result<(), BadInput> {
+    together::kinds(logs)?;
+    if options.mass_kg.is_none() {
+        together::masses(logs)?;
+    }
+    if options.max_rate_rad_s.is_none() {
+        together::full_rates(logs)?;
     }
     Ok(())
 }

@@ -143,7 +143,7 @@ impl Identification {
     /// The base vehicle, with what the logs and options say without any fit.
     pub(super) fn new(data: &Data, options: &IdentifyOptions) -> Self {
         let mut vehicle = options.base.clone();
-        vehicle.name = data.flights.first().map_or("identified", |f| &f.quality.log.name).to_string();
+        vehicle.name = data.flights.first().map_or("identified".into(), |f| f.quality.log.stem());
         let spans = data.flights.iter().map(|flight| {
             let usable = &flight.quality.usable;
             let span: Option<Span> = usable.first().zip(usable.last()).map(|(first, last)| [first[0], last[1]]);

@@ -1,21 +1,24 @@
 //! When the vehicle does not fly: it is not armed, has landed, or stands still.
 //!
 //! What the flight controller says of itself decides. Without it, stillness that no vehicle in the air has, and rotors
-//! that do far less than carry it, tell.
+//! that do far less than carry it, tell. Of the latter, what the odometry sees moving fast is in the air: a fall
+//! that drag holds at its speed does not seem to fall.
 
 use super::{LogFinding, Severity};
 use crate::base::stats::{mean, median};
 use crate::flight::Log;
-use crate::flight::series::held;
+use crate::flight::series::{held, interpolated};
 use crate::flight::spans::{Span, joined, length, without};
 use crate::insight::criteria::usable::{
     END_MARGIN_S, IDLE_EFFORT, LANDING_S, LEAST_COMMAND, LOG_END_S, REST_FORCE, REST_RATE, RESTING_S,
-    SHORTEST_FLIGHT_S, STILL_FORCE, STILL_RATE, TAKE_OFF_MARGIN_S, TOUCH_DOWN_MARGIN_S,
+    SHORTEST_FLIGHT_S, SLIDING_SPEED, STILL_FORCE, STILL_RATE, TAKE_OFF_MARGIN_S, TOUCH_DOWN_MARGIN_S,
 };
 use crate::model::constants::GRAVITY_M_S2;
 
 /// Length over which standing still is judged, s.
 const BIN_S: f64 = 0.1;
+/// Gap of the odometry across which nothing is known of the speed, s.
+const REACH_S: f64 = 0.5;
 /// Bins to either side that tell whether it rests.
 const NEIGHBOURS: usize = 5;
 
@@ -25,6 +28,8 @@ struct Bin {
     effort: f64,
     /// Neither turning nor falling.
     still: bool,
+    /// The odometry says that it moves; not where there is none.
+    slides: bool,
     /// Means of rates and specific force.
     means: [f64; 6],
 }
@@ -118,7 +123,9 @@ fn judged(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
         let bin = &bins[i];
         // Nothing is less than no number: a vehicle that never moves was never seen to need any effort.
         let works = bin.effort >= idle;
-        rests[i] && !works || effort.is_some() && bin.still && (bin.effort.is_nan() || bin.effort < idle)
+        let idles = bin.effort.is_nan() || bin.effort < idle;
+        // An estimate that runs away does not make what rests fly.
+        rests[i] && !works || effort.is_some() && bin.still && !bin.slides && idles
     };
     // A knock or two while being placed does not make a flight.
     let wide = (0..bins.len()).filter(|&i| on_ground(i)).map(|i| [bins[i].span[0] - BIN_S, bins[i].span[1] + BIN_S]);
@@ -129,9 +136,17 @@ fn judged(log: &Log, findings: &mut Vec<LogFinding>) -> Vec<Span> {
     still.filter(landed).collect()
 }
 
+/// Whether the odometry moves as nothing on the ground does, at each sample of the IMU.
+fn slides(log: &Log) -> Vec<bool> {
+    let speeds = log.odometry.rows.iter().map(|row| row[7..].iter().map(|x| x * x).sum::<f64>().sqrt());
+    let speeds = interpolated(&log.odometry.time_s, &speeds.collect::<Vec<_>>(), &log.imu.time_s, REACH_S);
+    speeds.into_iter().map(|speed| speed > SLIDING_SPEED.get()).collect()
+}
+
 fn bins(log: &Log, effort: Option<&[f64]>) -> Vec<Bin> {
     let imu = &log.imu;
     let norm = |row: &[f64]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let slides = slides(log);
     let mut bins = Vec::new();
     let mut first = 0;
     while first < imu.len() {
@@ -144,6 +159,7 @@ fn bins(log: &Log, effort: Option<&[f64]>) -> Vec<Bin> {
             span: [from, from + BIN_S],
             effort: effort.map_or(f64::NAN, |effort| mean(&effort[first..first + n])),
             still: turning < STILL_RATE.get() && (force - GRAVITY_M_S2).abs() < STILL_FORCE.get(),
+            slides: slides[first + n / 2],
             means: std::array::from_fn(|k| rows.iter().map(|row| row[k]).sum::<f64>() / n as f64),
         });
         first += n;

@@ -51,7 +51,7 @@ pub fn page(diagnosed: &Diagnosed, figures: &DiagnosisFigures) -> String {
         }
         (tables::hidden(d))
     };
-    page::page(&format!("Diagnosis of {}", d.base), STYLE, body)
+    page::page(&format!("Diagnosis of {}", logs(d)), STYLE, body)
 }
 
 fn drawn(figure: &Figure) -> Markup {

@@ -30,6 +30,15 @@ pub fn digits(value: f64, to: f64, digits: i32) -> String {
     format!("{value:.places$}").replace('-', "\u{2212}")
 }
 
+/// `low` to `high`, each with up to three digits.
+pub fn range([low, high]: [f64; 2]) -> String {
+    let short = |value: f64| {
+        let text = digits(value, value, 3);
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+    };
+    format!("{} to {}", short(low), short(high))
+}
+
 /// A unit as people write it: m/s2 with a raised 2.
 pub fn unit(unit: &str) -> String {
     let mut before = ' ';
@@ -54,6 +63,8 @@ mod tests {
         assert_eq!(digits(0.499_46, 0.005_9, 2), "0.4995");
         assert_eq!(digits(-1234.5, 1234.5, 3), "\u{2212}1234");
         assert_eq!(digits(0.0, 0.0, 3), "0.000");
+        assert_eq!(range([1.0 / 600.0, 0.01]), "0.00167 to 0.01");
+        assert_eq!([range([4.4e-5, 2.8e-4]), range([0.5, 150.0])], ["0.000044 to 0.00028", "0.5 to 150"]);
         assert_eq!([unit("m/s2"), unit("s2/rad"), unit("1/s"), unit("1")], ["m/s²", "s²/rad", "1/s", ""]);
     }
 }

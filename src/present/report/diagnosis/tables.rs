@@ -2,7 +2,7 @@
 
 use crate::insight::diagnose::gain;
 use crate::insight::diagnose::judgement::diagnosis::{Diagnosis, Verdict};
-use crate::present::report::page::{digits, unit};
+use crate::present::report::page::{digits, range, unit};
 use maud::{Markup, html};
 
 /// By channel, on flight not used for fitting.
@@ -140,7 +140,7 @@ pub fn hidden(d: &Diagnosis) -> Markup {
                         td { code { (p.effect) } }
                         td { (digits(p.smallest, p.smallest, 2)) } td { (digits(p.told_apart, p.told_apart, 2)) }
                         td class="text" { (p.nearest.unwrap_or("none")) }
-                        td { (p.typical[0]) " to " (p.typical[1]) } td class="text" { (unit(p.unit)) }
+                        td { (range(p.typical)) } td class="text" { (unit(p.unit)) }
                     }
                 }
             }
