@@ -1,6 +1,7 @@
 //! Which effects explain what is left: candidates, their rank, trials, and what is held.
 
 pub mod accident;
+pub mod begin;
 pub mod candidates;
 pub mod disambiguate;
 pub mod fitted;

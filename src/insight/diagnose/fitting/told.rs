@@ -9,10 +9,10 @@ use crate::insight::diagnose::prediction::numbers::THRUST;
 use crate::insight::diagnose::prediction::problem::{ChannelValues, Problem};
 use crate::insight::estimate::gram::Grams;
 
-/// The fit of the numbers `free`, without the thrust where flights at other throttles than the rest are better
+/// The fit of the numbers `free` from `start`, without the thrust where flights at other throttles than the rest are better
 /// predicted by the curve that was given: a cubic that is fitted to slow flights says nothing of a fast one.
-pub fn told(problem: &Problem, whitener: &Whitener, free: &[usize]) -> FitPoint {
-    let fit = |free: &[usize]| fit::fit(problem, whitener, &problem.model.base, free);
+pub fn told(problem: &Problem, whitener: &Whitener, start: &[f64], free: &[usize]) -> FitPoint {
+    let fit = |free: &[usize]| fit::fit(problem, whitener, start, free);
     let fitted = fit(free);
     let given: Vec<usize> = free.iter().copied().filter(|k| !THRUST.contains(k)).collect();
     if given.len() == free.len() || problem.rows[LIFT].is_empty() {

@@ -1,5 +1,6 @@
 //! Which effects explain the residuals: rank by score, refit the best and their rivals, keep the best, and again.
 
+use super::begin::begin;
 use super::candidates::{Candidate, base_numbers, candidates, causes, renewed};
 use super::left_over::saturated;
 use super::rank::rank;
@@ -66,7 +67,11 @@ impl<'a> Search<'a> {
         let whitener = Whitener::plain(&plain, &problem.rows);
         let skewed = crate::insight::diagnose::fitting::skew::estimate(problem, &state, &plain)
             .is_some_and(|skew| skew.abs() > CLOCK_SKEW_SEEN.get());
-        let point = if skewed { fit::stay(problem, &whitener, base, free) } else { told(problem, &whitener, free) };
+        let point = if skewed {
+            fit::stay(problem, &whitener, base, free)
+        } else {
+            told(problem, &whitener, &begin(problem, &whitener), free)
+        };
         Search { problem, skewed, whitener, point, added: Vec::new(), pending: Vec::new(), found: Vec::new() }
     }
 
