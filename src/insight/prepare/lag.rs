@@ -23,14 +23,14 @@ impl Following {
     }
 }
 
-/// Steps of time that differ by less are of one length, s: clocks are rounded by more.
+/// FollowedSteps of time that differ by less are of one length, s: clocks are rounded by more.
 const SAME_S: f64 = 1e-10;
 /// Lengths that are kept, each at its place by the microsecond: a prime, for most are round.
 const KEPT: usize = 13;
 
 /// What a step of `dt` seconds does.
 #[derive(Clone, Copy)]
-struct Step {
+struct FollowedStep {
     dt: f64,
     order: Order,
 }
@@ -43,14 +43,14 @@ enum Order {
 }
 
 /// A response over steps of time, which are of few lengths.
-struct Steps {
+struct FollowedSteps {
     by: Following,
-    kept: [Step; KEPT],
+    kept: [FollowedStep; KEPT],
 }
 
-impl Steps {
+impl FollowedSteps {
     fn new(by: Following) -> Self {
-        Self { by, kept: [Step::new(by, 0.0); KEPT] }
+        Self { by, kept: [FollowedStep::new(by, 0.0); KEPT] }
     }
 
     /// The response and its slope after `dt` seconds toward `to`.
@@ -62,7 +62,7 @@ impl Steps {
         }
         let step = &mut self.kept[(dt * 1e6).round() as usize % KEPT];
         if (step.dt - dt).abs() > SAME_S {
-            *step = Step::new(self.by, dt);
+            *step = FollowedStep::new(self.by, dt);
         }
         match step.order {
             Order::First(alpha) => [toward(y, to, alpha), 0.0],
@@ -71,7 +71,7 @@ impl Steps {
     }
 }
 
-impl Step {
+impl FollowedStep {
     fn new(by: Following, dt: f64) -> Self {
         let Following { tau, inertia, .. } = by;
         let second = || Order::Second(second_order(tau, inertia, dt));
@@ -94,7 +94,7 @@ fn follow(times: &[f64], values: &[f64], at: &[f64], by: Following) -> Vec<f64> 
     let known: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
     let Some(&first) = known.first() else { return vec![f64::NAN; at.len()] };
     let (mut now, mut y) = (0, [values[first], 0.0]);
-    let mut steps = Steps::new(by);
+    let mut steps = FollowedSteps::new(by);
     let one = |t: &f64| {
         let t = t - by.delay;
         if t < times[first] {
