@@ -16,7 +16,7 @@ fn pairs(logs: &[Quality]) -> impl Iterator<Item = (&Quality, &Quality)> {
 pub fn flights(logs: &[Quality]) -> Result<(), BadInput> {
     let Some((earlier, later)) = pairs(logs).find(|(a, b)| same(&a.log.imu, &b.log.imu)) else { return Ok(()) };
     let found = format!("the same flight as {}", earlier.log.name);
-    let advice = "give each flight once, and each earlier one after its own --against";
+    let advice = "give each flight once";
     Err(BadInput::new(&later.log.name, found, "another flight", advice))
 }
 
