@@ -2,10 +2,20 @@
 
 use crate::cli::columns;
 use crate::insight::diagnose::gain;
-use crate::insight::diagnose::judgement::diagnosis::Diagnosis;
+use crate::insight::diagnose::judgement::diagnosis::{Diagnosis, Drift};
 use crate::insight::diagnose::judgement::finding::{Finding, Status};
 use crate::insight::diagnose::selection::accident::LeftOut;
 use crate::present::report::{digits, range};
+
+/// Numbers of the compact model that moved.
+fn drift(moved: &[Drift]) -> String {
+    let rows = moved.iter().map(|x| {
+        let written = x.in_vehicle.map_or("-".into(), |v| format!("{v:.4}"));
+        vec![x.parameter.clone(), format!("{:.4}", x.base), interval(x.value, x.low, x.high), written, x.unit.into()]
+    });
+    let head = ["drift against the base", "was", "is (95 % interval)", "extended vehicle", ""];
+    columns::table(&head, rows.collect(), 1..2)
+}
 
 /// What is wrong, why, what it is worth, what to fly next.
 pub fn text(d: &Diagnosis) -> String {
@@ -27,19 +37,7 @@ pub fn text(d: &Diagnosis) -> String {
         out.push(format!("evident, and too small to matter: {}", small.join(", ")));
     }
     if !d.drift.is_empty() {
-        let rows = d.drift.iter().map(|x| {
-            let written = x.in_vehicle.map_or("-".into(), |v| format!("{v:.4}"));
-            vec![
-                x.parameter.clone(),
-                format!("{:.4}", x.base),
-                interval(x.value, x.low, x.high),
-                written,
-                x.unit.into(),
-            ]
-        });
-        let head = ["drift against the base", "was", "is (95 % interval)", "extended vehicle", ""];
-        let table = columns::table(&head, rows.collect(), 1..2);
-        out.push(table);
+        out.push(drift(&d.drift));
     }
     let rows = d.held_out.iter().map(|(name, g)| {
         vec![

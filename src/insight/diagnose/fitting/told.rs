@@ -9,8 +9,8 @@ use crate::insight::diagnose::prediction::numbers::THRUST;
 use crate::insight::diagnose::prediction::problem::{ChannelValues, Problem};
 use crate::insight::estimate::gram::Grams;
 
-/// The fit of the numbers `free` from `start`, without the thrust where flights at other throttles than the rest are better
-/// predicted by the curve that was given: a cubic that is fitted to slow flights says nothing of a fast one.
+/// The fit of the numbers `free` from `start`, without the thrust where flights at other throttles than the rest are
+/// better predicted by the curve that was given: a cubic that is fitted to slow flights says nothing of a fast one.
 pub fn told(problem: &Problem, whitener: &Whitener, start: &[f64], free: &[usize]) -> FitPoint {
     let fit = |free: &[usize]| fit::fit(problem, whitener, start, free);
     let fitted = fit(free);
