@@ -211,7 +211,5 @@ fn check_racing(args: &Args) -> Result<(), BadInput> {
 fn identified(args: &Args, logs: &[Quality], bar: &ProgressBar) -> Result<Vehicle, BadInput> {
     let options = identify::IdentifyOptions::new(Vehicle::load(&args.base)?);
     let found = identify(logs.to_vec(), &options, &mut |step, _| bar.set_message(format!("identifying: {step}")));
-    // The later flights are what the diagnosis is of.
-    let name = logs.get(args.against.len()).map_or(found.vehicle.name, |quality| quality.log.stem());
-    Ok(Vehicle { name, ..found.vehicle })
+    Ok(found.vehicle)
 }

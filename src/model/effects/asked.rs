@@ -33,14 +33,13 @@ impl Card {
             Some(at - value)
         };
         let (mut low, mut high) = (parameter.low, parameter.high);
-        let rises = beyond(high)? > beyond(low)?;
         let (first, last) = (beyond(low)?, beyond(high)?);
         if first == last || first * last > 0.0 || !value.is_finite() {
             return None;
         }
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            if (beyond(middle)? > 0.0) == rises {
+            if (beyond(middle)? > 0.0) == (last > first) {
                 high = middle;
             } else {
                 low = middle;

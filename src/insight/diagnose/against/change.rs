@@ -96,6 +96,16 @@ impl Changes {
     }
 }
 
+impl Change {
+    /// What is named may be one of the effects `others` as well, of which it has none yet.
+    pub fn or(&mut self, others: Vec<&'static str>) {
+        if !others.is_empty() {
+            self.members.extend(others);
+            self.status = Status::NamedSet;
+        }
+    }
+}
+
 #[cfg(test)]
 impl Change {
     /// One that is named alone, of this difference.

@@ -178,10 +178,10 @@ impl<'a> DifferenceSearch<'a> {
     }
 
     /// A suspect fitted from `start`, and what its difference gains.
-    fn fitted(&self, suspect: usize, start: &[f64]) -> Tried {
+    fn fitted(&self, place: usize, start: &[f64]) -> Tried {
         let problem = self.problem;
         let Selection { point, whitener, .. } = &self.selection;
-        let (place, suspect) = (suspect, &self.suspects[suspect]);
+        let suspect = &self.suspects[place];
         let unknown = |k: &usize| !point.free.contains(k);
         let common: Vec<usize> = suspect.common().filter(unknown).collect();
         let own: Vec<usize> = common.iter().chain(&suspect.own).copied().collect();

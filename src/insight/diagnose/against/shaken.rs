@@ -14,10 +14,7 @@ pub fn tell(changes: &mut [Change]) {
         let off = ["x", "y", "z"].map(|axis| change.difference.get(axis).map_or(0.0, |v| v.value));
         let new = |shakes: &&Card| !change.members.contains(&shakes.id);
         let shakes: Vec<&str> = shaking(card, off).filter(new).map(|shakes| shakes.id).collect();
-        if !shakes.is_empty() {
-            change.members.extend(shakes);
-            change.status = Status::NamedSet;
-        }
+        change.or(shakes);
     }
 }
 

@@ -13,10 +13,7 @@ pub fn tell(changes: &mut [Change]) {
         let Some(own) = card(change) else { continue };
         let may_be = |rival: &&&Card| are_rivals(own, rival) && !change.members.contains(&rival.id);
         let rivals: Vec<&str> = untold.iter().filter(may_be).map(|rival| rival.id).collect();
-        if !rivals.is_empty() {
-            change.members.extend(rivals);
-            change.status = Status::NamedSet;
-        }
+        change.or(rivals);
     }
 }
 
