@@ -11,6 +11,7 @@ mod fill;
 pub mod fits;
 pub mod force;
 pub mod force_terms;
+mod full_stick;
 pub mod inputs;
 pub mod judge;
 pub mod law;

@@ -73,6 +73,21 @@ fn a_lent_thrust_curve_keeps_its_own_pack() {
     assert!(vehicle.identified.unwrap().assumed.contains_key("battery"));
 }
 
+/// Where nobody says what a full stick asks for, it is the base vehicle's, and no less than what was asked for.
+#[test]
+fn a_full_stick_asks_for_what_was_flown() {
+    let mut log = truth::fly(&truth::Vehicle::draw(3), 3, 60.0, 1.0);
+    let [roll, _, yaw] = log.vehicle.max_rate_rad_s.take().unwrap().map(f64::to_degrees);
+    let mut base = Vehicle::load("seed_class").unwrap();
+    (base.max_rate_deg_s.roll, base.max_rate_deg_s.yaw) = (0.2 * roll, 2.0 * yaw);
+    let found = identify(vec![check(&log)], &IdentifyOptions::new(base), &mut |_, _| ());
+    let [full_roll, _, full_yaw] = found.full_rate_rad_s.map(f64::to_degrees);
+    let asked = log.setpoint.column(0).iter().map(|w| w.abs().to_degrees()).fold(0.0, f64::max);
+    assert!(full_roll > 0.9 * asked && full_roll <= asked, "{full_roll}, where {asked} was asked for");
+    assert!((full_yaw / yaw - 2.0).abs() < 1e-9, "{full_yaw}");
+    assert!(found.remarks.iter().any(|r| r.contains("or what the log asks for beyond")), "{:?}", found.remarks);
+}
+
 /// Every log where `RACER_FLIGHT_DATA` points to.
 #[test]
 fn vehicles_of_measured_flights_are_read_back() {

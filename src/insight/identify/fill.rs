@@ -43,7 +43,7 @@ pub fn fill(
     for (key, why) in &judged.left {
         out.assume(key, why);
     }
-    assumed::say_what_matters(out, data);
+    assumed::say_what_matters(out, options);
 }
 
 /// Whether a channel is of something that was fitted.

@@ -3,7 +3,7 @@
 use super::estimate::Estimated;
 use super::fits::Kept;
 use super::rates::Compared;
-use super::{IdentifyOptions, fastest};
+use super::{IdentifyOptions, fastest, full_stick};
 use crate::base::stats::Score;
 use crate::flight::spans::Span;
 use crate::insight::prepare::data::Data;
@@ -150,7 +150,8 @@ impl Identification {
             LogSpan { name: flight.quality.log.name.clone(), span_s: span.unwrap_or_default() }
         });
         let said = data.flights.iter().find_map(|flight| flight.quality.log.vehicle.max_rate_rad_s);
-        let full_rate_rad_s = options.max_rate_rad_s.or(said).unwrap_or(options.base.max_rates_rad_s());
+        let said = options.max_rate_rad_s.or(said);
+        let full_rate_rad_s = said.unwrap_or_else(|| full_stick::at_least(data, options.base.max_rates_rad_s()));
         vehicle.identified = Some(Identified {
             racer: env!("CARGO_PKG_VERSION").into(),
             base: options.base.name.clone(),
@@ -183,7 +184,7 @@ impl Identification {
             channels: Vec::new(),
         };
         out.origin("full_rate_deg_s", if options.max_rate_rad_s.is_some() { Origin::Option } else { Origin::Record });
-        if options.max_rate_rad_s.or(said).is_none() {
+        if said.is_none() {
             let why = "what a full stick asks for: neither the logs nor --full-rates say it";
             out.assume("full_rate_deg_s", why);
         }

@@ -2,14 +2,16 @@
 //! away, and tell from its nearest rival.
 
 use super::diagnosis::{Detectable, NotDetectable};
+use super::finding::{Finding, Status};
 use crate::insight::criteria::flown::{ABSORBED_SHARE, NEAREST_LIKENESS, SEEN_DEVIATIONS};
 use crate::insight::diagnose::prediction::numbers::span;
 use crate::insight::diagnose::prediction::problem::Problem;
 use crate::insight::diagnose::selection::rank::Reach;
 use crate::model::effects::{self, Card, EffectKind, ResidualChannel, Role};
 
-/// What the flights could show, and what not, and why.
-pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<NotDetectable>) {
+/// What the flights could show, and what not, and why; what is named of `findings` has shown, however little of it
+/// would have.
+pub fn judge(problem: &Problem, reach: &[Reach], findings: &[Finding]) -> (Vec<Detectable>, Vec<NotDetectable>) {
     let (mut can, mut cannot) = (Vec::new(), Vec::new());
     for card in effects::cards() {
         let p = &card.parameters[0];
@@ -51,6 +53,8 @@ pub fn judge(problem: &Problem, reach: &[Reach]) -> (Vec<Detectable>, Vec<NotDet
             manoeuvre: card.manoeuvre.0,
         });
     }
+    let named = |id: &str| findings.iter().any(|f| f.effect == id && f.status != Status::Suspected);
+    cannot.retain(|n: &NotDetectable| !named(n.effect));
     (can, cannot)
 }
 

@@ -49,8 +49,7 @@ pub fn rate(
     }
     if verdict.kept.rate[axis] {
         if assumed {
-            let why =
-                "the log tells its share of the full-stick rate, and that is the base vehicle's: give --full-rates";
+            let why = "the log tells its share of the full-stick rate, and that is assumed: give --full-rates";
             out.assume(&rate_key, why);
         } else {
             out.found(&rate_key, out.max_rate_rad_s[axis].times(degrees).interval());
