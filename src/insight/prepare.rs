@@ -3,6 +3,7 @@
 pub mod attitude;
 pub mod data;
 pub mod flight;
+pub mod kept_steps;
 pub mod lag;
 pub mod lately;
 pub mod rotors;

@@ -1,7 +1,8 @@
 //! What a held command has become behind the response of what follows it.
 
+use super::kept_steps::KeptSteps;
 use crate::base::lane::fused;
-use crate::model::dynamics::response::{SecondOrder, alpha, limited, second_order, toward};
+use crate::model::dynamics::response::{ResponseSteps, limited, toward};
 
 /// How a command is followed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,60 +24,15 @@ impl Following {
     }
 }
 
-/// FollowedSteps of time that differ by less are of one length, s: clocks are rounded by more.
-const SAME_S: f64 = 1e-10;
-/// Lengths that are kept, each at its place by the microsecond: a prime, for most are round.
-const KEPT: usize = 13;
-
-/// What a step of `dt` seconds does.
-#[derive(Clone, Copy)]
-struct FollowedStep {
-    dt: f64,
-    order: Order,
-}
-
-/// By the order of the response: the share of the gap that closes, or both of value and slope.
-#[derive(Clone, Copy)]
-enum Order {
-    First(f64),
-    Second(SecondOrder<f64>),
-}
-
-/// A response over steps of time, which are of few lengths.
-struct FollowedSteps {
-    by: Following,
-    kept: [FollowedStep; KEPT],
-}
-
-impl FollowedSteps {
-    fn new(by: Following) -> Self {
-        Self { by, kept: [FollowedStep::new(by, 0.0); KEPT] }
+/// The response and its slope `dt` seconds later, toward `to`.
+#[inline(always)]
+fn after(steps: &mut KeptSteps<1>, by: Following, [y, slope]: [f64; 2], to: f64, dt: f64) -> [f64; 2] {
+    let Following { tau, slew, inertia, .. } = by;
+    if inertia > 0.0 {
+        return steps.second_order(0, tau, inertia, dt).after(y, slope, to).into();
     }
-
-    /// The response and its slope after `dt` seconds toward `to`.
-    #[inline(always)]
-    fn after(&mut self, [y, slope]: [f64; 2], to: f64, dt: f64) -> [f64; 2] {
-        let Following { tau, slew, inertia, .. } = self.by;
-        if slew > 0.0 && inertia == 0.0 {
-            return [limited(y, to, tau, slew, dt), 0.0];
-        }
-        let step = &mut self.kept[(dt * 1e6).round() as usize % KEPT];
-        if (step.dt - dt).abs() > SAME_S {
-            *step = FollowedStep::new(self.by, dt);
-        }
-        match step.order {
-            Order::First(alpha) => [toward(y, to, alpha), 0.0],
-            Order::Second(step) => step.after(y, slope, to).into(),
-        }
-    }
-}
-
-impl FollowedStep {
-    fn new(by: Following, dt: f64) -> Self {
-        let Following { tau, inertia, .. } = by;
-        let second = || Order::Second(second_order(tau, inertia, dt));
-        Self { dt, order: if inertia > 0.0 { second() } else { Order::First(alpha(tau, dt)) } }
-    }
+    let mut left = || steps.left(0, tau, dt);
+    [if slew > 0.0 { limited(y, to, tau, slew, dt, left) } else { toward(y, to, 1.0 - left()) }, 0.0]
 }
 
 /// `values`, each given at its of the ascending `times` and held until the next, as `by` follows them, at each of `at`.
@@ -94,7 +50,7 @@ fn follow(times: &[f64], values: &[f64], at: &[f64], by: Following) -> Vec<f64> 
     let known: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
     let Some(&first) = known.first() else { return vec![f64::NAN; at.len()] };
     let (mut now, mut y) = (0, [values[first], 0.0]);
-    let mut steps = FollowedSteps::new(by);
+    let mut steps = KeptSteps::new();
     let one = |t: &f64| {
         let t = t - by.delay;
         if t < times[first] {
@@ -102,11 +58,11 @@ fn follow(times: &[f64], values: &[f64], at: &[f64], by: Following) -> Vec<f64> 
         }
         while known.get(now + 1).is_some_and(|&next| times[next] <= t) {
             let i = known[now];
-            y = steps.after(y, values[i], times[known[now + 1]] - times[i]);
+            y = after(&mut steps, by, y, values[i], times[known[now + 1]] - times[i]);
             now += 1;
         }
         let i = known[now];
-        steps.after(y, values[i], t - times[i])[0]
+        after(&mut steps, by, y, values[i], t - times[i])[0]
     };
     at.iter().map(one).collect()
 }

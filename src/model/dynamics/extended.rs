@@ -12,8 +12,8 @@ use crate::model::vehicle::Vehicle;
 pub use memory::EffectMemory;
 pub use motion::{Drive, RigidBody, moved};
 pub use stages::{
-    ForceInputs, TurnError, actuator_response, body_rates, command_delays, elapsed, force, loaded, specific_force,
-    terminal, throttle,
+    ForceInputs, TurnError, actuator_response, actuator_response_by, body_rates, command_delays, elapsed, force,
+    loaded, specific_force, terminal, throttle,
 };
 
 /// Steps are divided until each is at most this long, s.

@@ -13,13 +13,40 @@ pub fn toward<R: Real>(from: R, to: R, alpha: R) -> R {
     alpha.mul_add(to - from, from)
 }
 
+/// Where what a step of time does to the response of an axis (roll, pitch, yaw, thrust) comes from: it does not depend
+/// on where the response stands, and steps of the same length do the same.
+pub trait ResponseSteps<R> {
+    /// exp(-dt / tau): the share of a gap that is left.
+    fn left(&mut self, axis: usize, tau: R, dt: R) -> R;
+    /// See [`second_order`].
+    fn second_order(&mut self, axis: usize, tau: R, inertia: R, dt: R) -> SecondOrder<R>;
+}
+
+/// Computed each time.
+pub struct Computed;
+
+impl<R: Real> ResponseSteps<R> for Computed {
+    #[inline(always)]
+    fn left(&mut self, _: usize, tau: R, dt: R) -> R {
+        (-(dt / tau)).exp()
+    }
+
+    #[inline(always)]
+    fn second_order(&mut self, _: usize, tau: R, inertia: R, dt: R) -> SecondOrder<R> {
+        second_order(tau, inertia, dt)
+    }
+}
+
 /// First order whose slope is at most one over `slew` (s), after `dt` seconds: straight while the gap is more than the
-/// limit times `tau`, exponential afterwards.
+/// limit times `tau`, exponential afterwards; `left` is of a step without the limit.
 #[inline(always)]
-pub fn limited<R: Real>(from: R, to: R, tau: R, slew: R, dt: R) -> R {
+pub fn limited<R: Real>(from: R, to: R, tau: R, slew: R, dt: R, left: impl FnOnce() -> R) -> R {
     let slew = slew.max(R::of(1e-12));
     let gap = to - from;
     let straight = (gap.abs() * slew - tau).clamp(R::zero(), dt);
+    if !R::zero().lt(straight).any() {
+        return toward(from, to, R::one() - left());
+    }
     let way = (straight / slew).min(gap.abs());
     let reached = from + R::select(gap.lt(R::zero()), -way, way);
     toward(reached, to, R::one() - (-((dt - straight) / tau)).exp())
@@ -100,9 +127,9 @@ mod tests {
             for _ in 0..10_000 {
                 x += ((1.0 - x) / tau).clamp(-limit, limit) * dt / 10_000.0;
             }
-            let ours = limited(0.0, 1.0, tau, 1.0 / limit, dt);
+            let ours = limited(0.0, 1.0, tau, 1.0 / limit, dt, || (-dt / tau).exp());
             assert!((ours - x).abs() < 1e-3, "{dt}: {ours} {x}");
-            assert_eq!(limited(0.0, -1.0, tau, 1.0 / limit, dt), -ours);
+            assert_eq!(limited(0.0, -1.0, tau, 1.0 / limit, dt, || (-dt / tau).exp()), -ours);
         }
     }
 }

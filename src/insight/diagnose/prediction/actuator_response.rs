@@ -2,6 +2,7 @@
 
 use super::model::Model;
 use super::record::FlightRecord;
+use crate::insight::prepare::kept_steps::KeptSteps;
 use crate::model::dynamics::extended::{self, Extended, TurnError};
 use crate::model::effects::Role;
 
@@ -100,6 +101,7 @@ pub fn actuator_response(
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let mut arrivals = Arrivals { sent: &record.sent, late, lost, at: [0; 3], command: begin };
     let mut out = ActuatorResponse::with_capacity(n);
+    let mut steps = KeptSteps::<4>::new();
     let (mut command, mut slope, mut now, mut newest) = (begin, [0.0; 3], first, 0);
     for i in 0..n {
         let t = record.time[i] * stretch;
@@ -112,8 +114,9 @@ pub fn actuator_response(
             let (g, next) = arrivals.next();
             let until = next.min(t);
             if until > now {
+                let stood = (command, slope);
                 (command, slope) =
-                    extended::actuator_response(p, command, slope, arrivals.command, voltage, until - now);
+                    extended::actuator_response_by(&mut steps, p, stood, arrivals.command, voltage, until - now);
                 now = until;
             }
             if next > t {

@@ -4,6 +4,7 @@
 use super::{EffectMemory, Extended};
 use crate::base::lane::{Mask, Real, build, each};
 use crate::model::attitude::{body_axes, dot};
+use crate::model::dynamics::response::ResponseSteps;
 use crate::model::dynamics::{State, drag, response};
 use crate::model::effects::{
     self, Actuator, AerodynamicForces, BatteryLoad, BodyRates, CommandDelay, CommandSetpoint, RelativeWind, ThrustInput,
@@ -41,6 +42,19 @@ pub fn actuator_response<R: Real>(
     voltage: R,
     h: R,
 ) -> ([R; 4], [R; 3]) {
+    actuator_response_by(&mut response::Computed, p, (command, slope), sent, voltage, h)
+}
+
+/// The same, with what steps of time do from `steps`.
+#[inline(always)]
+pub fn actuator_response_by<R: Real>(
+    steps: &mut impl ResponseSteps<R>,
+    p: &Extended<R>,
+    (command, slope): ([R; 4], [R; 3]),
+    sent: [R; 4],
+    voltage: R,
+    h: R,
+) -> ([R; 4], [R; 3]) {
     let values = &p.values;
     let zero = R::zero();
     let tau = p.tau;
@@ -68,15 +82,16 @@ pub fn actuator_response<R: Real>(
         let second_order = zero.lt(if i < 3 { actuator.inertia[i] } else { zero });
         if !oscillates || (!second_order).any() {
             next[i] = if i < 3 && limited {
-                response::limited(command[i], setpoint.command[i], tau[i], actuator.slew[i] * p.compact.max_rate[i], h)
+                let slew = actuator.slew[i] * p.compact.max_rate[i];
+                response::limited(command[i], setpoint.command[i], tau[i], slew, h, || steps.left(i, tau[i], h))
             } else {
-                response::toward(command[i], setpoint.command[i], R::one() - (-(h / tau[i])).exp())
+                response::toward(command[i], setpoint.command[i], R::one() - steps.left(i, tau[i], h))
             };
         }
         if i < 3 && oscillates {
             let inertia = actuator.inertia[i];
             let (value, change) =
-                response::second_order(tau[i], inertia, h).after(command[i], slope[i], setpoint.command[i]);
+                steps.second_order(i, tau[i], inertia, h).after(command[i], slope[i], setpoint.command[i]);
             next[i] = R::select(second_order, value, next[i]);
             next_slope[i] = R::select(second_order, change, next_slope[i]);
         }
