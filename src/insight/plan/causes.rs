@@ -107,7 +107,7 @@ pub fn pairs(all: &[Cause]) -> Vec<([usize; 2], f64)> {
             };
             // That it is there has to show in so many stretches for each of its numbers.
             let least = numbers.map_or(TIE_DEVIATIONS.get(), |n| (AGREEING_STRETCHES.get() * n as f64).sqrt());
-            out.push(([i, j], PLANNED_MARGIN.get() * least));
+            out.push(([i, j], PLANNED_MARGIN.get() + least));
         }
     }
     out

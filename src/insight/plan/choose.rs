@@ -46,21 +46,59 @@ pub fn choose(pairs: &[CausePair], kinds: &[FlownKind], around_s: f64, longest_s
         let Some((place, times, _)) = best else { break };
         counts[place] += times;
     }
-    let told =
-        |counts: &[f64]| -> Vec<bool> { pairs.par_iter().map(|pair| pair.planned(counts) >= pair.wanted).collect() };
-    let tells = told(&counts);
-    // What was useful at first may not be needed beside what came later.
+    // What was useful at first may not be needed beside what came later; what one flight tells in part is worth it too.
+    let least = |pair: &CausePair| match pair.planned(&counts) {
+        told if told >= pair.wanted => pair.wanted,
+        part => part - WORTH_FLYING.get() * pair.wanted,
+    };
+    let least: Vec<f64> = hopeful.par_iter().map(|pair| least(pair)).collect();
+    let keeps = |counts: &[f64]| hopeful.par_iter().zip(&least).all(|(pair, least)| pair.planned(counts) >= *least);
     for place in 0..kinds.len() {
         while counts[place] > always[place] {
             counts[place] -= 1.0;
-            if told(&counts) != tells {
+            if !keeps(&counts) {
                 counts[place] += 1.0;
                 break;
             }
         }
     }
+    let tells: Vec<bool> = pairs.par_iter().map(|pair| pair.planned(&counts) >= pair.wanted).collect();
     if counts == always && !tells.contains(&true) {
         counts.fill(0.0);
     }
     Choice { tells, seconds: length(&counts), counts }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pair::{Stretches, Way};
+    use super::*;
+    use nalgebra::DMatrix;
+
+    /// Two causes that the dive tells apart, by some standard deviations each time, and the circle does not.
+    fn pair(wanted: f64) -> CausePair {
+        let alike = DMatrix::from_element(2, 2, 20.0);
+        let apart = DMatrix::from_diagonal_element(2, 2, 20.0);
+        let of = |gram: &DMatrix<f64>, n: usize| Stretches::new(vec![gram.clone(); n], 2);
+        let kinds = vec![(of(&alike, 2), 1.0), (of(&apart, 2), 1.0)];
+        let (known, around) = (of(&alike, 20), Stretches::new(Vec::new(), 2));
+        let way = Way { prior: vec![1e-6], noise: 4.0, known, around, kinds };
+        CausePair { causes: [0, 1], wanted, ways: vec![way] }
+    }
+
+    fn chosen(wanted: f64, longest_s: f64) -> Choice {
+        let kinds = [ALWAYS, Manoeuvre::Dive].map(|kind| FlownKind { kind, times: 1, seconds: 8.0 });
+        choose(&[pair(wanted)], &kinds, 20.0, longest_s)
+    }
+
+    #[test]
+    fn no_more_is_flown_than_tells_and_what_is_told_in_part_is_flown() {
+        let whole = chosen(3.0, 300.0);
+        assert!(whole.tells == [true] && whole.counts[1] > 0.0, "{:?}", whole.counts);
+        let less = [1.0, whole.counts[1] - 1.0];
+        assert!(pair(3.0).planned(&less) < 3.0, "{:?}", whole.counts);
+        // A shorter pack does not carry it: what it carries is not taken away again.
+        let part = chosen(3.0, whole.seconds - 8.0);
+        assert!(part.tells == [false] && part.counts[1] > 0.0, "{:?}", part.counts);
+    }
 }
