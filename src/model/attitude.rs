@@ -75,6 +75,21 @@ pub fn rotation_vector(q: Quaternion<f64>) -> [f64; 3] {
     [q[1] * scale, q[2] * scale, q[3] * scale]
 }
 
+/// The same of a rotation of at most a whole turn: of the two ways round that end alike the one nearer to `near`, rad.
+#[inline(always)]
+pub fn rotation_vector_near(q: Quaternion<f64>, near: impl FnOnce() -> [f64; 3]) -> [f64; 3] {
+    let short = rotation_vector(q);
+    let angle = dot(short, short).sqrt();
+    // The other way round is longer by two of what this one is short of half a turn.
+    if angle < std::f64::consts::FRAC_PI_2 {
+        return short;
+    }
+    let long = each!(short, |v| v * (1.0 - std::f64::consts::TAU / angle));
+    let near = near();
+    let apart = |v: [f64; 3]| -> f64 { (0..3).map(|k| (v[k] - near[k]).powi(2)).sum() };
+    if apart(long) < apart(short) { long } else { short }
+}
+
 /// The body's x, y and z axes in the world.
 #[inline(always)]
 pub fn body_axes<R: Real>(q: Quaternion<R>) -> [[R; 3]; 3] {
@@ -87,4 +102,18 @@ pub fn body_axes<R: Real>(q: Quaternion<R>) -> [[R; 3]; 3] {
         [x.mul_add(y2, -(w * z2)), one - (xx + zz), y.mul_add(z2, w * x2)],
         [x.mul_add(z2, w * y2), y.mul_add(z2, -(w * x2)), one - (xx + yy)],
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flip_of_more_than_half_a_turn_is_told_the_way_round_that_was_flown() {
+        for angle in [0.3, 3.0, 3.4, 4.5, -3.4_f64] {
+            let q = [(0.5 * angle).cos(), (0.5 * angle).sin(), 0.0, 0.0];
+            let told = rotation_vector_near(q, || [0.9 * angle, 0.1, 0.0]);
+            assert!((told[0] - angle).abs() < 1e-12, "{angle}: {told:?}");
+        }
+    }
 }

@@ -42,4 +42,5 @@ mod truth;
 mod truth_hidden;
 mod truth_other;
 mod truth_physics;
+mod unseen;
 mod written;

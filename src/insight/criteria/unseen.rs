@@ -5,6 +5,8 @@ use super::criteria;
 criteria! {
     "Does it hold elsewhere?";
 
+    /// Share of all flight from which a single flight is unseen by thirds: what the others know is no measure of it.
+    MOST_UNSEEN = 0.6, Assumed("half as long again as all others together");
     /// Standard deviations (over stretches of time) by which an effect has to lower the whitened squares of unseen
     /// flight.
     PAYS_DEVIATIONS = 2.0, Theory("one in forty by chance; four stretches that agree");

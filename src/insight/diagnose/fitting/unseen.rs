@@ -3,43 +3,52 @@
 
 use super::fit::{FitPoint, costs, fit};
 use super::whiten::Whitener;
-use crate::insight::criteria::unseen::{MUCH_WORSE_SHARE, WORSE_DEVIATIONS, WORSE_SHARE};
+use crate::insight::criteria::unseen::{MOST_UNSEEN, MUCH_WORSE_SHARE, WORSE_DEVIATIONS, WORSE_SHARE};
 use crate::insight::diagnose::prediction::numbers::BEGIN;
 use crate::insight::diagnose::prediction::problem::Problem;
+use crate::insight::diagnose::prediction::record::FlightRecord;
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use nalgebra::DMatrix;
 
-/// How many parts a single flight is divided into.
+/// How many parts a flight is divided into that holds most of all.
 const PARTS: usize = 3;
 /// A step leads to what is near where it gains this share of what it should.
 const NEAR: f64 = 0.5;
 
-/// Which stretches of time are unseen in each part: a flight at a time where there are several, else a third.
+/// Which stretches of time are unseen in each part: a flight at a time, and a third of one that holds most of all.
 pub fn parts(problem: &Problem) -> Vec<Vec<bool>> {
-    let flights = problem.records.len();
-    if flights > 1 {
-        let of = |record: usize| {
-            let mut out = vec![false; problem.blocks];
-            problem.records[record].block.iter().for_each(|b| out[*b as usize] = true);
-            out
-        };
-        return (0..flights).map(of).collect();
-    }
-    thirds(problem)
+    let one = |record: &FlightRecord| {
+        let [first, last] = ends(record).unwrap_or_default();
+        let most = (last - first) as f64 > MOST_UNSEEN.get() * problem.blocks as f64;
+        let count = if most { PARTS } else { 1 };
+        (0..count).map(move |part| of_parts(problem, record, part, count)).collect::<Vec<_>>()
+    };
+    problem.records.iter().flat_map(one).collect()
 }
 
 /// Stretches of each third of every flight.
 pub fn thirds(problem: &Problem) -> Vec<Vec<bool>> {
-    let mut parts = vec![vec![false; problem.blocks]; PARTS];
-    for record in &problem.records {
-        let (Some(&first), Some(&last)) = (record.block.first(), record.block.last()) else { continue };
-        for block in first..=last {
-            let part = (block - first) as usize * PARTS / ((last - first) as usize + 1);
-            parts[part][block as usize] = true;
-        }
+    let third = |part: usize| {
+        let each = problem.records.iter().map(|record| of_parts(problem, record, part, PARTS));
+        each.fold(vec![false; problem.blocks], |all, one| all.iter().zip(one).map(|(a, b)| *a || b).collect())
+    };
+    (0..PARTS).map(third).collect()
+}
+
+/// The stretches of one of so many parts of a flight.
+fn of_parts(problem: &Problem, record: &FlightRecord, part: usize, count: usize) -> Vec<bool> {
+    let mut out = vec![false; problem.blocks];
+    if let Some([first, beyond]) = ends(record) {
+        let at = |part: usize| first + ((beyond - first) * part).div_ceil(count);
+        out[at(part)..at(part + 1)].fill(true);
     }
-    parts
+    out
+}
+
+/// The first stretch of a flight, and one beyond its last.
+fn ends(record: &FlightRecord) -> Option<[usize; 2]> {
+    record.block.first().zip(record.block.last()).map(|(first, last)| [*first as usize, *last as usize + 1])
 }
 
 /// Whether a number is the voltage that a flight begins with.

@@ -5,7 +5,7 @@ use super::imu_seen::{ShiftedImu, fine_axes, lagged};
 use super::model::Model;
 use super::record::FlightRecord;
 use crate::base::lane::{build, fused};
-use crate::model::attitude::{Quaternion, body_axes, compose, in_world, normalized, rotation_vector, small_rotation};
+use crate::model::attitude::{Quaternion, body_axes, compose, in_world, normalized, small_rotation};
 use crate::model::dynamics::extended;
 use crate::model::effects::{Role, Sensed, SensorErrors};
 use rayon::prelude::*;
@@ -84,7 +84,7 @@ fn over(
         }
         (0..3).for_each(|j| pushed[j] += h * push[j]);
     }
-    joined([rotation_vector(turn), pushed])
+    joined([record.turn(turn, &[from, to]), pushed])
 }
 
 /// The IMU's samples without what the sensors `k` make of them: rates and specific force.

@@ -2,7 +2,7 @@
 
 use super::channels::{CHANNELS, FORCE, PUSH, TURN, VOLTAGE};
 use super::record::FlightRecord;
-use crate::model::attitude::{compose, in_world, rotation_vector};
+use crate::model::attitude::{compose, in_world};
 
 /// What was measured, in the layout of [`super::predict::Predicted::channels`].
 pub fn measured(record: &FlightRecord, gravity: f64) -> [Vec<f64>; CHANNELS] {
@@ -19,9 +19,10 @@ pub fn measured(record: &FlightRecord, gravity: f64) -> [Vec<f64>; CHANNELS] {
             (FORCE..FORCE + 3).for_each(|c| out[c][bin] = f64::NAN);
         }
     }
-    for &[from, to] in &record.windows {
+    for window in &record.windows {
+        let [from, to] = *window;
         let [w, a, b, c] = record.attitude[from];
-        let turn = rotation_vector(compose([w, -a, -b, -c], record.attitude[to]));
+        let turn = record.turn(compose([w, -a, -b, -c], record.attitude[to]), window);
         let velocity = |i: usize| in_world(&record.axes[i], std::array::from_fn(|k| record.velocity[k][i]));
         let (v0, v1) = (velocity(from), velocity(to));
         let mut gained: [f64; 3] = std::array::from_fn(|k| v1[k] - v0[k]);

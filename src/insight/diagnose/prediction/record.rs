@@ -12,7 +12,7 @@ use crate::insight::prepare::flight::PreparedFlight;
 use crate::insight::prepare::rotors::{command_per_speed, mixing};
 use crate::insight::prepare::windows::{often_enough, windows};
 use crate::insight::quality::Quality;
-use crate::model::attitude::{Quaternion, body_axes};
+use crate::model::attitude::{Quaternion, body_axes, rotation_vector_near};
 use crate::model::vehicle::Vehicle;
 
 /// Width of a bin: residuals of rates and specific force are averaged over it, s.
@@ -175,6 +175,13 @@ impl FlightRecord {
         let usable = |[from, to]: [usize; 2]| (from..=to).all(|i| self.usable[i]);
         let known = |ends: [usize; 2]| ends.iter().all(|&i| self.attitude[i][0].is_finite());
         windows(&self.time, OVER_S, |ends| usable(ends) && known(ends))
+    }
+
+    /// The turn `q` over a window, rad: a fast flip is more than half a turn, and only the gyro tells which way round.
+    #[inline(always)]
+    pub fn turn(&self, q: Quaternion<f64>, &[from, to]: &[usize; 2]) -> [f64; 3] {
+        let turned = |gyro: &[f64]| (from..to).map(|i| gyro[i] * (self.time[i + 1] - self.time[i])).sum();
+        rotation_vector_near(q, || std::array::from_fn(|k| turned(&self.imu[k])))
     }
 
     /// When the flight begins, s.
