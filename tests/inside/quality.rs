@@ -115,6 +115,16 @@ fn clipping_is_left_out() {
     assert!(kept.count() < 20);
 }
 
+/// A pilot who only works the throttle still corrects a little, and such corrections go with anything.
+#[test]
+fn a_setpoint_that_hardly_moves_is_no_problem() {
+    let mut log = good();
+    log.setpoint.rows.iter_mut().for_each(|row| row[1] *= -0.002);
+    let quality = check(&log);
+    let wrong = ["sign", "swapped_axes"].map(|kind| find(&quality, kind));
+    assert!(wrong.iter().all(Option::is_none), "{wrong:?}");
+}
+
 #[test]
 fn swapped_signs_and_frames_are_problems() {
     let (_, finding) = damaged("sign", |log| log.setpoint.rows.iter_mut().for_each(|row| row[1] = -row[1]));

@@ -2,7 +2,7 @@
 
 use super::offset::{integrals, integrated, turns};
 use super::{LogFinding, Severity};
-use crate::base::stats::{correlation, mean, median, sd};
+use crate::base::stats::{correlation, mean, median, quantile, sd};
 use crate::flight::Log;
 use crate::flight::series::{held, period};
 use crate::flight::spans::{Span, contain};
@@ -10,6 +10,7 @@ use crate::insight::criteria::consistent::{
     ATTITUDE_CORRELATION, ATTITUDE_SHARE, ATTITUDE_TURN_RAD, FRAME_SAMPLES, GRAVITY_SHARE, SIGN_CORRELATION,
     SWAPPED_CORRELATION, SWAPPED_OWN, UPRIGHT_SHARE, VELOCITY_CORRELATION, VELOCITY_SAMPLES, VELOCITY_SPEED_M_S,
 };
+use crate::insight::criteria::flown::RATE_SPREAD;
 use crate::model::attitude::body_axes;
 use crate::model::constants::GRAVITY_M_S2;
 use crate::model::vehicle::AXES;
@@ -37,12 +38,19 @@ fn problem(kind: &'static str, stream: &'static str, what: String, so: &str, fin
 /// Rates follow the setpoints of their own axis, in the same direction.
 fn setpoints(log: &Log, chosen: &[usize], findings: &mut Vec<LogFinding>) {
     let gyro: [Vec<f64>; 3] = std::array::from_fn(|k| chosen.iter().map(|&i| log.imu.rows[i][k]).collect());
+    let times: Vec<f64> = chosen.iter().map(|&i| log.imu.time_s[i]).collect();
     for axis in 0..3 {
         let setpoint = log.setpoint.column(axis);
+        // What hardly moves goes with anything.
+        let sent: Vec<f64> =
+            held(&log.setpoint.time_s, &setpoint, &times).into_iter().filter(|x| x.is_finite()).collect();
+        if quantile(&sent, 0.995) - quantile(&sent, 0.005) < RATE_SPREAD.get() {
+            continue;
+        }
         let agreement = |response: &[f64]| {
             let at = |delay: f64| {
-                let times: Vec<f64> = chosen.iter().map(|&i| log.imu.time_s[i] - delay).collect();
-                let asked = held(&log.setpoint.time_s, &setpoint, &times);
+                let earlier: Vec<f64> = times.iter().map(|t| t - delay).collect();
+                let asked = held(&log.setpoint.time_s, &setpoint, &earlier);
                 let (x, y): (Vec<f64>, Vec<f64>) =
                     asked.iter().zip(response).filter(|(x, y)| x.is_finite() && y.is_finite()).unzip();
                 correlation(&x, &y)
