@@ -32,9 +32,9 @@ impl<T: Copy> KeptStep<T> {
     }
 }
 
-impl<const AXES: usize> KeptSteps<AXES> {
+impl<const AXES: usize> Default for KeptSteps<AXES> {
     /// None yet.
-    pub fn new() -> Self {
+    fn default() -> Self {
         let by = [f64::NAN; 2];
         let still = Computed.second_order(0, 1.0, 1.0, 0.0);
         Self {
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn kept_steps_do_what_computed_ones_do() {
-        let mut kept = KeptSteps::<2>::new();
+        let mut kept = KeptSteps::<2>::default();
         for i in 0..1000 {
             let (axis, dt) = (i % 2, 0.001 + 1e-4 * (i % 7) as f64);
             let (tau, inertia) = if i < 500 { (0.05, 1e-4) } else { (0.04, 3e-4) };

@@ -50,7 +50,7 @@ fn follow(times: &[f64], values: &[f64], at: &[f64], by: Following) -> Vec<f64> 
     let known: Vec<usize> = (0..values.len()).filter(|&i| values[i].is_finite()).collect();
     let Some(&first) = known.first() else { return vec![f64::NAN; at.len()] };
     let (mut now, mut y) = (0, [values[first], 0.0]);
-    let mut steps = KeptSteps::new();
+    let mut steps = KeptSteps::default();
     let one = |t: &f64| {
         let t = t - by.delay;
         if t < times[first] {

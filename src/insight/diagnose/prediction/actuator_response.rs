@@ -101,7 +101,7 @@ pub fn actuator_response(
     let stretch = 1.0 / (1.0 + model.acting(x, Role::ClockFast));
     let mut arrivals = Arrivals { sent: &record.sent, late, lost, at: [0; 3], command: begin };
     let mut out = ActuatorResponse::with_capacity(n);
-    let mut steps = KeptSteps::<4>::new();
+    let mut steps = KeptSteps::<4>::default();
     let (mut command, mut slope, mut now, mut newest) = (begin, [0.0; 3], first, 0);
     for i in 0..n {
         let t = record.time[i] * stretch;
