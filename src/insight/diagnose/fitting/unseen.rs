@@ -16,15 +16,27 @@ const PARTS: usize = 3;
 /// A step leads to what is near where it gains this share of what it should.
 const NEAR: f64 = 0.5;
 
-/// Which stretches of time are unseen in each part: a flight at a time, and a third of one that holds most of all.
+/// Which stretches of time are unseen in each part: a flight at a time where there are several, else a third.
 pub fn parts(problem: &Problem) -> Vec<Vec<bool>> {
-    let one = |record: &FlightRecord| {
-        let [first, last] = ends(record).unwrap_or_default();
-        let most = (last - first) as f64 > MOST_UNSEEN.get() * problem.blocks as f64;
-        let count = if most { PARTS } else { 1 };
-        (0..count).map(move |part| of_parts(problem, record, part, count)).collect::<Vec<_>>()
-    };
-    problem.records.iter().flat_map(one).collect()
+    let several = problem.records.len() > 1;
+    divided(problem, |_| if several { 1 } else { PARTS })
+}
+
+/// The same with a flight that holds most of all in thirds: what the others know is no measure of what it shows. For
+/// names; a vehicle has to predict whole flights.
+pub fn even_parts(problem: &Problem) -> Vec<Vec<bool>> {
+    let most = |[first, beyond]: [usize; 2]| (beyond - first) as f64 > MOST_UNSEEN.get() * problem.blocks as f64;
+    divided(problem, |record| if ends(record).is_some_and(most) { PARTS } else { 1 })
+}
+
+/// Every flight in so many parts.
+fn divided(problem: &Problem, count: impl Fn(&FlightRecord) -> usize) -> Vec<Vec<bool>> {
+    let mut out = Vec::new();
+    for record in &problem.records {
+        let count = count(record);
+        out.extend((0..count).map(|part| of_parts(problem, record, part, count)));
+    }
+    out
 }
 
 /// Stretches of each third of every flight.

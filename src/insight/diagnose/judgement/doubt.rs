@@ -79,7 +79,7 @@ fn unpaid(fitted: &FittedSelection, findings: &mut [Finding]) {
     cards.retain(|(_, card)| card.role != Role::CommandsLost && !followed(fitted, card));
     let all = |f: &Finding| f.cards().flat_map(|(card, _)| fitted.places(card)).collect();
     let places: Vec<Vec<usize>> = cards.iter().map(|(i, _)| all(&findings[*i])).collect();
-    for ((i, _), paid) in cards.into_iter().zip(pays::pays(fitted, &unseen::parts(fitted.problem), &places)) {
+    for ((i, _), paid) in cards.into_iter().zip(pays::pays(fitted, &unseen::even_parts(fitted.problem), &places)) {
         if paid.surely() < PAYS_DEVIATIONS.get() {
             findings[i].suspect("on flight that was not used for fitting it does not pay".into());
         }
