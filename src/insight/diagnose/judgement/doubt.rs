@@ -11,6 +11,7 @@ use super::pays;
 use crate::insight::criteria::unseen::{PAYS_DEVIATIONS, SAME_SKEW_SHARE};
 use crate::insight::diagnose::fitting::skew;
 use crate::insight::diagnose::fitting::unseen;
+use crate::insight::diagnose::prediction::channels::TURN;
 use crate::insight::diagnose::prediction::numbers::span;
 use crate::insight::diagnose::selection::fitted::FittedSelection;
 use crate::model::effects::{self, Card, Role, are_rivals};
@@ -65,7 +66,11 @@ fn cancelling(fitted: &FittedSelection, findings: &mut [Finding]) {
 
 fn unshown(fitted: &FittedSelection, findings: &mut [Finding]) {
     let missing = kinematic::missing(fitted);
+    let no_attitude = fitted.problem.rows[TURN].is_empty();
     for (i, card) in named(fitted, findings) {
+        if no_attitude && card.role == Role::GyroLate {
+            findings[i].suspect("no attitude in the logs shows it: late commands look the same".into());
+        }
         if missing.iter().any(|other| other.id == card.id) {
             findings[i].suspect("attitude and velocity do not show it in the same size".into());
         }
