@@ -34,7 +34,7 @@ fn named(d: &Diagnosis) -> Vec<&str> {
     d.findings.iter().filter(|f| f.status == Status::Named).map(|f| f.effect).collect()
 }
 
-/// At 17 rad/s a flip goes 4 rad within a quarter of a second.
+/// At 840 deg/s a flip goes 3.7 rad within a quarter of a second.
 #[test]
 fn a_fast_flip_is_told_the_way_round_that_was_flown() {
     let few = [Manoeuvre::Right, Manoeuvre::RollSteps, Manoeuvre::RampDown];

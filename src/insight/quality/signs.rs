@@ -41,7 +41,7 @@ fn setpoints(log: &Log, chosen: &[usize], findings: &mut Vec<LogFinding>) {
     let times: Vec<f64> = chosen.iter().map(|&i| log.imu.time_s[i]).collect();
     for axis in 0..3 {
         let setpoint = log.setpoint.column(axis);
-        // What hardly moves goes with anything.
+        // What hardly moves even at its most goes with anything; manoeuvres may be few.
         let sent: Vec<f64> =
             held(&log.setpoint.time_s, &setpoint, &times).into_iter().filter(|x| x.is_finite()).collect();
         if quantile(&sent, 0.995) - quantile(&sent, 0.005) < RATE_SPREAD.get() {
