@@ -31,7 +31,7 @@ use judgement::diagnosis::{Diagnosis, Residual, Verdict};
 use judgement::finding::{Finding, Status};
 use judgement::findings::Judgement;
 use judgement::judge::Judged;
-use judgement::{detectable, doubt, drift, findings, one_motor, set_aside};
+use judgement::{detectable, doubt, drift, findings, one_motor, parts, set_aside};
 use prediction::channels::NAMES;
 use prediction::model::Model;
 use prediction::motors;
@@ -75,15 +75,14 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     watch("predicting", 0.02);
     let (problem, selection, left_out) = accident::select_steady(logs, |logs| problem(logs, vehicle), watch);
     let mut selection = unpaid_forms::given_up(&problem, selection);
-    let usable_s = problem.records.iter().map(|r| r.usable_s).sum();
     ordinary::first(&problem, &mut selection);
     whole::parts(&problem, &mut selection);
     disambiguate::clocks(&problem, &mut selection);
     let lost = disambiguate::chance(&problem, &mut selection);
     let (selection, aside) = set_aside::set_aside(&problem, selection);
     watch("judging", 0.85);
-    let structure = structure::search(&problem, &selection.point.state, &selection.point.residual);
-    let before = structure::search(&problem, &selection.base.state, &selection.base.residual);
+    let [structure, before] =
+        [&selection.point, &selection.base].map(|p| structure::search(&problem, &p.state, &p.residual));
     let fitted = FittedSelection::new(&problem, &selection);
     let Judgement { mut findings, judged, mut drift, unexplained, small } = findings::find(&fitted, lost, &structure);
     let driven: Vec<motors::Driven> = problem.records.iter().flat_map(|r| r.driven.clone()).collect();
@@ -95,6 +94,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let fitted_kept = FittedSelection::new(&problem, &kept);
     keep::as_written(&fitted_kept, &mut findings);
     one_motor::name(&driven, &mut findings);
+    parts::in_common(&mut findings);
     let held = gain::measure(&problem, &selection, &kept);
     gains(&problem, &held, &judged, &mut findings);
     findings.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
@@ -113,7 +113,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         verdict,
         logs: problem.records.iter().map(|r| r.name.clone()).collect(),
         base: vehicle.name.clone(),
-        usable_s,
+        usable_s: problem.records.iter().map(|r| r.usable_s).sum(),
         left_out,
         findings,
         unexplained,

@@ -7,7 +7,7 @@ mod clock;
 mod kinematic;
 
 use super::finding::{Finding, Status};
-use super::pays;
+use super::{late_gyro, pays};
 use crate::insight::criteria::unseen::{PAYS_DEVIATIONS, SAME_SKEW_SHARE};
 use crate::insight::diagnose::fitting::skew;
 use crate::insight::diagnose::fitting::unseen;
@@ -22,6 +22,7 @@ pub fn all(fitted: &FittedSelection, findings: &mut [Finding]) {
     unshown(fitted, findings);
     unpaid(fitted, findings);
     untimed(fitted, findings);
+    late_gyro::may_be(fitted.problem.moved(), findings);
 }
 
 fn untimed(fitted: &FittedSelection, findings: &mut [Finding]) {

@@ -9,6 +9,7 @@ use super::drift;
 use super::finding::{Finding, Status, Value};
 use super::gusts;
 use super::judge::{Judged, judge};
+use super::parts::or_parts;
 use crate::insight::criteria::material::{LEAST_IMPACT, LEAST_SENSOR_IMPACT};
 use crate::insight::diagnose::selection::fitted::FittedSelection;
 use crate::insight::diagnose::selection::lost::Lost;
@@ -83,15 +84,6 @@ impl Judgement {
         let open = structure.iter().any(|s| s.channel == "specific force z" && adequacy::remembers(s));
         for finding in self.findings.iter_mut().filter(|f| open && f.explained.contains_key(MOVES)) {
             finding.suspect("structure remains in specific force z".into());
-        }
-    }
-}
-
-/// What has parts may be each by itself, of one size by chance: every rate loop is late.
-fn or_parts(finding: &mut Finding) {
-    for part in effects::card(finding.effect).map_or(&[][..], |card| card.parts) {
-        if finding.status != Status::Suspected && !finding.members.contains(part) {
-            finding.or(part);
         }
     }
 }

@@ -6,6 +6,7 @@ use super::measured::measured;
 use super::model::Model;
 use super::predict::Predicted;
 use super::record::FlightRecord;
+use crate::base::stats::mean;
 use crate::insight::estimate::gram::Stretch;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -79,6 +80,11 @@ impl Problem {
             }
         }
         out
+    }
+
+    /// By how much the odometry's clocks were moved to the gyro's, on average, s: positive where its turns came first.
+    pub fn moved(&self) -> f64 {
+        mean(&self.records.iter().map(|r| r.moved).collect::<Vec<_>>())
     }
 
     /// Where each flight begins on a clock that runs through all of them, s.

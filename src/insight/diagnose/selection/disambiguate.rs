@@ -2,7 +2,6 @@
 
 use super::lost::{Lost, lost_commands};
 use super::{Added, Selection};
-use crate::base::stats::mean;
 use crate::insight::criteria::evident::LEAST_GAIN;
 use crate::insight::criteria::rival::{LOST_DELAY, SAME_DELAY_S, SAME_DELAY_SHARE, SAME_LAG_SHARE};
 use crate::insight::diagnose::fitting::agreement;
@@ -29,7 +28,7 @@ pub fn clocks(problem: &Problem, selection: &mut Selection) {
 /// The same of delays that are the parts of one: what they have in common is the clock's, as far as the odometry was
 /// off by as much, and what one of them has besides is its own.
 fn common(problem: &Problem, selection: &mut Selection, stamped: &'static Card, delayed: &'static Card) {
-    let moved = moved(problem);
+    let moved = problem.moved();
     let parts: Vec<&'static Card> = delayed.parts.iter().filter_map(|id| effects::card(id)).collect();
     let held = |card: &&&Card| selection.added.iter().any(|a| a.card.id == card.id);
     if parts.is_empty() || parts.iter().filter(held).count() < parts.len() {
@@ -55,11 +54,6 @@ fn common(problem: &Problem, selection: &mut Selection, stamped: &'static Card, 
     }
 }
 
-/// By how much the odometry's clocks were moved to the gyro's, s.
-fn moved(problem: &Problem) -> f64 {
-    mean(&problem.records.iter().map(|r| r.moved).collect::<Vec<_>>())
-}
-
 /// Whether a delay is what the odometry was moved by.
 fn is_same(delay: f64, moved: f64) -> bool {
     (delay - moved).abs() <= SAME_DELAY_S.get() + SAME_DELAY_SHARE.get() * moved.abs()
@@ -67,7 +61,7 @@ fn is_same(delay: f64, moved: f64) -> bool {
 
 /// The same of one pair.
 fn clock(problem: &Problem, selection: &mut Selection, stamped: &'static Card, delayed: &'static Card) {
-    let moved = moved(problem);
+    let moved = problem.moved();
     let is_one = |a: &Added| [stamped.id, delayed.id].contains(&a.card.id);
     let Some(i) = selection.added.iter().position(is_one) else { return };
     let mut x = selection.point.x.clone();

@@ -1,12 +1,11 @@
-//! One cause where one will do, and two where it takes two: effects that are the whole of others at one size. Where the
-//! sizes differ, what the parts have in common may be the whole's, and that is said.
+//! One cause where one will do, and two where it takes two: effects that are the whole of others at one size.
 
 use super::{Added, Selection};
 use crate::insight::criteria::rival::{SAME_DELAY_S, SAME_DELAY_SHARE};
 use crate::insight::diagnose::fitting::fit;
 use crate::insight::diagnose::prediction::numbers::span;
 use crate::insight::diagnose::prediction::problem::Problem;
-use crate::model::effects::{self, Card, Evidence};
+use crate::model::effects::{self, Card};
 
 /// Puts a whole in the place of its parts where they have one size, and parts in the place of a whole that needs one of
 /// them beside itself.
@@ -25,20 +24,7 @@ pub fn parts(problem: &Problem, selection: &mut Selection) {
             let mean = sizes.iter().sum::<f64>() / sizes.len() as f64;
             exchange(problem, selection, &parts, &[whole], &[mean]);
         }
-        in_common(selection, whole, &parts);
     }
-}
-
-/// The whole at the size of the smaller part, and the rest of the larger one, are the same to every sample: the smaller
-/// one may as well be the whole, or what that is told from by the odometry's clock alone.
-fn in_common(selection: &mut Selection, whole: &'static Card, parts: &[&'static Card]) {
-    let x = &selection.point.x;
-    let held = |card: &Card| selection.added.iter().any(|a| a.card.id == card.id);
-    let smaller = parts.iter().min_by(|a, b| x[span(a).start].total_cmp(&x[span(b).start]));
-    let Some(smaller) = smaller.filter(|_| parts.iter().all(|part| held(part))) else { return };
-    let stamped = effects::twins(Evidence::OdometryClock).filter(|(_, delayed)| delayed.id == whole.id);
-    let same: Vec<&'static Card> = std::iter::once(whole).chain(stamped.map(|(stamped, _)| stamped)).collect();
-    selection.added.iter_mut().filter(|a| a.card.id == smaller.id).for_each(|a| a.ties.extend(&same));
 }
 
 /// Whether sizes are the same, as far as they are known.
