@@ -17,7 +17,7 @@ pub fn or_parts(finding: &mut Finding) {
 pub fn in_common(findings: &mut [Finding]) {
     for whole in effects::cards().filter(|card| !card.parts.is_empty()) {
         let named = |id: &&str| findings.iter().position(|f| f.effect == *id && f.status != Status::Suspected);
-        let Some(parts) = whole.parts.iter().map(|id| named(id)).collect::<Option<Vec<usize>>>() else { continue };
+        let Some(parts) = whole.parts.iter().map(named).collect::<Option<Vec<usize>>>() else { continue };
         let size = |i: &usize| {
             let first = effects::card(findings[*i].effect).map_or("", |card| card.parameters[0].name);
             findings[*i].parameters.get(first).map_or(0.0, |value| value.value)
