@@ -176,6 +176,15 @@ fn a_wind_that_turns_is_no_gust() {
     assert!(!extended.unwrap().effects.sizes.contains_key("steady_wind"));
 }
 
+/// Rule 4: a fan pushes at one place. Moments with motors at their limits, which are left out of the vertical force,
+/// left all others out of the search by place, so that its air was called wind and gusts.
+#[test]
+fn a_fan_is_found_beside_motors_at_their_limits() {
+    let diagnosis = said_of([32, 166], 1.0, 500.0, ("fan_corner", 5.8554));
+    assert!(diagnosis.unexplained.iter().any(|s| s.along == Some("place")), "{:?}", diagnosis.unexplained);
+    assert!(names(&diagnosis).iter().all(|name| !["steady_wind", "gusts"].contains(name)), "{:?}", names(&diagnosis));
+}
+
 /// Rule 1: lift that forward flight has and sideways flight has not is a form of the one cause.
 #[test]
 fn lift_in_forward_flight_is_a_form_of_lift() {

@@ -4,6 +4,7 @@
 pub mod folds;
 pub mod oscillation;
 pub mod place;
+pub mod pushes;
 
 use crate::base::stats::quantile;
 use crate::insight::criteria::complete::VARIANCE_SHARE;

@@ -2,10 +2,10 @@
 //! of the vehicle tells that, because the same place pushes another way when the vehicle has turned.
 
 use super::folds::fold;
+use super::pushes::pushes;
 use crate::insight::criteria::complete::{PLACE_ROWS, PLACE_SHARE};
-use crate::insight::diagnose::prediction::channels::FORCE;
 use crate::insight::diagnose::prediction::problem::{ChannelValues, Problem};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Side of a place, m.
 const SIDE_M: f64 = 6.0;
@@ -13,22 +13,18 @@ const SIDE_M: f64 = 6.0;
 /// Share of the horizontal residual that its mean at the same place, at other times, predicts beyond chance; none below
 /// a share that matters.
 pub fn share(problem: &Problem, residual: &ChannelValues) -> Option<f64> {
-    let rows = &problem.rows[FORCE];
-    let same = |c: usize| problem.rows[c].len() == rows.len() && residual[c].len() == rows.len();
-    if rows.is_empty() || !(FORCE..FORCE + 3).all(same) {
-        return None;
-    }
-    let mut places = Vec::with_capacity(rows.len());
-    let mut force = Vec::with_capacity(rows.len());
-    for (i, row) in rows.iter().enumerate() {
-        let (record, at) = (&problem.records[row.flight as usize], row.sample as usize);
-        let place = [0, 1].map(|k| record.position[k][at] / SIDE_M);
+    let (mut places, mut force) = (Vec::new(), Vec::new());
+    for push in pushes(problem, residual).iter().flat_map(BTreeMap::values) {
+        let position = &problem.records[push.row.flight as usize].position;
+        let place = [0, 1].map(|k| position[k][push.row.sample as usize] / SIDE_M);
         if place.iter().any(|p| !p.is_finite()) {
             return None;
         }
-        places.push((fold(row.block), place.map(|p| p.floor() as i32)));
-        let axes = &record.axes[at];
-        force.push([0, 1].map(|j| (0..3).map(|k| axes[k][j] * residual[FORCE + k][i]).sum::<f64>()));
+        places.push((fold(push.row.block), place.map(|p| p.floor() as i32)));
+        force.push(push.force);
+    }
+    if force.is_empty() {
+        return None;
     }
     // What a shifted residual shows of this is chance.
     let n = force.len();
