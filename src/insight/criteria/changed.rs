@@ -27,6 +27,8 @@ CHANGED_CHANCE = 5e-3, Theory("a false alarm in two hundred comparisons, were th
     CHANGED_RATE = 0.015, Assumed("that of a move against the base that matters");
     /// Of the discharge.
     CHANGED_DISCHARGE = 0.2, Assumed("that of a move against the base that matters");
+    /// What a changed effect does after a second, m/s.
+    CHANGED_IMPACT = 0.02, Assumed("of eight pairs, changes that were found did 0.8 and more, a false one 0.017");
     /// Change of another error of a sensor that matters, in small typical sizes.
     CHANGED_SENSOR = 1.5, Assumed("of 146 pairs without a change three were given one, of 0.8 and 0.9");
     /// Change of a sensor's constant error that matters, in small typical sizes.

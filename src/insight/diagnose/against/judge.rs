@@ -7,10 +7,10 @@ use super::sizes;
 use super::suspect::{FoundDifference, Suspect};
 use crate::base::stats::chi_squared_chance;
 use crate::insight::criteria::changed::{
-    BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_SENSOR, KNOWN_DEVIATIONS, KNOWN_SHARE, LASTING_KNOWN,
-    LASTING_SHARE,
+    BETWEEN_DEVIATIONS, CHANGED_BIAS, CHANGED_CHANCE, CHANGED_IMPACT, CHANGED_SENSOR, KNOWN_DEVIATIONS, KNOWN_SHARE,
+    LASTING_KNOWN, LASTING_SHARE,
 };
-use crate::insight::criteria::material::{LEAST_IMPACT, MATERIAL_SIZE};
+use crate::insight::criteria::material::{LEAST_SENSOR_IMPACT, MATERIAL_SIZE};
 use crate::insight::criteria::unseen::PAYS_DEVIATIONS;
 use crate::insight::diagnose::fitting::score::{ScoreTest, score};
 use crate::insight::diagnose::fitting::unseen::thirds;
@@ -42,7 +42,8 @@ fn judge(fitted: &FittedSelection, suspects: &[Suspect], found: &FoundDifference
     let (squares, chance) = chance(fitted, &own);
     let least = match suspect.card.map(|card| card.kind) {
         Some(EffectKind::Battery) | None => 0.0,
-        Some(_) => LEAST_IMPACT.get(),
+        Some(EffectKind::Sensor) => LEAST_SENSOR_IMPACT.get(),
+        Some(_) => CHANGED_IMPACT.get(),
     };
     let why = if chance * suspects.len() as f64 > CHANGED_CHANCE.get() {
         Some("the stretches of flight do not agree well enough".to_string())

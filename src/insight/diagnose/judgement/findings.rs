@@ -10,7 +10,7 @@ use super::finding::{Finding, Status, Value};
 use super::gusts;
 use super::judge::{Judged, judge};
 use super::parts::or_parts;
-use crate::insight::criteria::material::LEAST_IMPACT;
+use crate::insight::criteria::material::{LEAST_IMPACT, LEAST_SENSOR_IMPACT};
 use crate::insight::diagnose::selection::fitted::FittedSelection;
 use crate::insight::diagnose::selection::lost::Lost;
 use crate::insight::diagnose::structure::{PLACE, Structure};
@@ -129,6 +129,7 @@ fn matters(judged: &Judged) -> bool {
     let least = match effects::card(finding.effect).map(|card| card.kind) {
         // What the voltage does is felt in the thrust long after.
         Some(EffectKind::Battery) | None => 0.0,
+        Some(EffectKind::Sensor) => LEAST_SENSOR_IMPACT.get(),
         Some(_) => LEAST_IMPACT.get(),
     };
     let constant = finding.has(Role::ConstantError);
