@@ -12,7 +12,7 @@ const CAP: f64 = 6.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Push {
     pub row: ResidualRow,
-    /// North and east, m/s2: of the body's x and y axes. Along z it is the thrust that errs, and where the motors are
+    /// East and north, m/s2: of the body's x and y axes. Along z it is the thrust that errs, and where the motors are
     /// at their limits it is not known.
     pub force: [f64; 2],
 }
