@@ -10,7 +10,7 @@ criteria! {
     /// Bias of a sensor, in its small typical sizes, that is more than any such sensor has.
     MATERIAL_BIAS = 0.8, Assumed("the fit of every flight allows for smaller ones");
     /// What is worth a name after a second, m/s.
-    LEAST_IMPACT = 0.005, Assumed("the least true one, 6 % of an unseen force of IndiFlight's, has 0.007, a false one 0.003");
+    LEAST_IMPACT = 0.005, Assumed("IndiFlight's late thrust, 6 % of an unseen force, has 0.007, a false one 0.003");
     /// The same of what a sensor's error integrates to, m/s.
     LEAST_SENSOR_IMPACT = 0.02, Assumed("below the errors of any estimator");
     /// Gusts that are worth a word, m/s2.
