@@ -1,4 +1,5 @@
-//! The logs of a training, written row by row as it goes: what a killed process leaves is whole.
+//! The logs of a training, written row by row as it goes. What a killed process leaves is whole but for the last row, of
+//! which a part may be there: readers leave it out, and going on takes it back.
 
 use super::metrics::{self, LogRow};
 use super::{Run, TENSORBOARD, tensorboard};
@@ -134,7 +135,10 @@ mod tests {
         assert_eq!(text(), "steps,a\n1,0.5\n2,0.5\n");
         logs.cut(one).unwrap();
         drop(logs);
+        // A kill in the middle of a row.
+        File::options().append(true).open(run.folder.join(metrics::METRICS)).unwrap().write_all(b"2,0.").unwrap();
         let mut logs = LiveLogs::open(&run).unwrap();
+        logs.cut(one).unwrap();
         assert_eq!(logs.lengths(), one);
         logs.append(&row(3)).unwrap();
         assert_eq!(text(), "steps,a\n1,0.5\n3,0.5\n");

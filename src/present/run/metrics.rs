@@ -104,7 +104,7 @@ pub fn read_known<const N: usize>(path: &Path, names: [&str; N]) -> Result<Vec<[
 fn read_where<const N: usize>(path: &Path, names: [&str; N], all: bool) -> Result<Vec<[Option<f64>; N]>, BadInput> {
     let failed = |found: String| BadInput::new(path.display(), found, "the log of a training, metrics.csv", "");
     let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
-    // A training under way, or one that lost power, may end in half a row.
+    // A training under way, or one that was killed or lost power, may end in half a row.
     let rows = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
     let mut csv = csv::Reader::from_reader(rows.as_bytes());
     let header = csv.headers().map_err(|error| failed(error.to_string()))?.clone();
