@@ -1,5 +1,5 @@
-//! The logs of a training, written row by row as it goes. What a killed process leaves is whole but for the last row, of
-//! which a part may be there: readers leave it out, and going on takes it back.
+//! The logs of a training, written row by row as it goes. What a killed process leaves is whole but for the last row,
+//! of which a part may be there: readers leave it out, and going on takes it back.
 
 use super::metrics::{self, LogRow};
 use super::{Run, TENSORBOARD, tensorboard};
