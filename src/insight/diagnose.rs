@@ -24,6 +24,7 @@ pub mod structure;
 use crate::base::stats::mean;
 use crate::insight::Watch;
 use crate::insight::prepare::data::Data;
+use crate::insight::prepare::flight::PreparedFlight;
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
 use extension::{extend, keep, unpaid_forms};
@@ -32,11 +33,13 @@ use judgement::finding::{Finding, Status};
 use judgement::findings::Judgement;
 use judgement::judge::Judged;
 use judgement::{detectable, doubt, drift, findings, one_motor, parts, set_aside};
+use motor_loop::MotorsLate;
 use prediction::channels::NAMES;
 use prediction::model::Model;
 use prediction::motors;
 use prediction::problem::Problem;
 use prediction::record::{self, FlightRecord};
+use rayon::prelude::*;
 use selection::Selection;
 use selection::fitted::FittedSelection;
 use selection::{accident, disambiguate, ordinary, whole};
@@ -67,7 +70,9 @@ pub fn problem(logs: Vec<Quality>, vehicle: &Vehicle) -> Problem {
     if records.iter().all(|r| r.from_rotors) {
         model.forget_voltage();
     }
-    Problem::new(model, records)
+    let late = |f: &PreparedFlight| MotorsLate::new(&f.quality.log, &f.quality.usable);
+    let late = data.flights.par_iter().map(late).collect::<Option<_>>().unwrap_or_default();
+    Problem { late, ..Problem::new(model, records) }
 }
 
 /// Diagnoses flights of a vehicle that is thought to be `vehicle`.
@@ -94,7 +99,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     let fitted_kept = FittedSelection::new(&problem, &kept);
     keep::as_written(&fitted_kept, &mut findings);
     one_motor::name(&driven, &mut findings);
-    parts::in_common(&mut findings);
+    parts::in_common(&problem.late, &mut findings);
     let held = gain::measure(&problem, &selection, &kept);
     gains(&problem, &held, &judged, &mut findings);
     findings.sort_by(|a, b| rank(b).total_cmp(&rank(a)));

@@ -18,6 +18,11 @@ criteria! {
     SAME_DELAY_S = 6e-4, Assumed("a third of the IMU's period at 500 Hz");
     /// The same as a share of the delay.
     SAME_DELAY_SHARE = 0.05, Assumed("both are known to a few percent");
+    /// Share of a delay by which the motors' outputs follow the throttle, from which on commands have it before the
+    /// motors, and below which they have it behind them.
+    BEFORE_SHARE = 0.4, Assumed("all of it or none, known to a millisecond");
+    /// Share of it by which turns follow the outputs, beyond a lag, where gyro and accelerometer are late by it.
+    BEHIND_SHARE = 0.8, Assumed("motors that are no plain lag seem some 2 ms late besides");
     /// Difference of a lag of the velocity from the shift of its clock, as a share of that, up to which it comes from
     /// it.
     SAME_LAG_SHARE = 0.5, Assumed("the lag is known worse than the shift");

@@ -5,6 +5,7 @@
 //! The vehicle turns by `w' = a v` with `tau v' = u - v`, u the outputs' squares in the pattern of the axis; the loop
 //! answers by `du = gain a d(int v) + g1 d(a v) + g2 d(setpoint)` over [`ANSWER_S`].
 
+mod late;
 mod outputs;
 mod plant;
 
@@ -16,11 +17,14 @@ use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
 use crate::insight::estimate::jackknife::jackknife;
 use crate::insight::estimate::robust::huber;
+pub use late::MotorsLate;
 use nalgebra::{DMatrix, DVector};
 use outputs::Outputs;
 pub use plant::TurningPlant;
 use plant::plants;
 
+/// Vehicles of more motors make up for a weak one with several, and turn by other patterns.
+pub const FOUR: usize = 4;
 /// Roll and pitch, whose gains are told.
 pub const AXES: usize = 2;
 /// Outputs are compared with those so long before, s: an integrator hardly moves meanwhile.

@@ -2,7 +2,8 @@
 
 use super::cause::MOVES;
 use super::finding::{Finding, Status, Value};
-use crate::insight::diagnose::prediction::motors::{Driven, FOUR, Weak, weak};
+use crate::insight::diagnose::motor_loop::FOUR;
+use crate::insight::diagnose::prediction::motors::{Driven, Weak, weak};
 use crate::model::constants::GRAVITY_M_S2;
 use crate::model::effects::{self, Card, Role};
 use std::collections::BTreeMap;

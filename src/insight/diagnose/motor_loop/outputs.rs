@@ -4,7 +4,7 @@ use crate::flight::series::period;
 use crate::flight::spans::{Span, contain};
 use crate::flight::{MOTORS, Stream};
 use crate::insight::criteria::identified::MOTOR_END_SHARE;
-use crate::insight::diagnose::prediction::motors::FOUR;
+use crate::insight::diagnose::motor_loop::FOUR;
 use crate::insight::prepare::rotors::columns;
 
 /// Patterns of four motors that turn a vehicle about one axis each, in whatever order they are logged.

@@ -8,10 +8,9 @@ use crate::flight::{Log, MOTORS, Stream};
 use crate::insight::criteria::evident::SURE_DEVIATIONS;
 use crate::insight::criteria::material::WEAK_MOTOR;
 use crate::insight::criteria::rival::ALONE_SHARE;
+use crate::insight::diagnose::motor_loop::FOUR;
 use crate::insight::prepare::rotors::columns;
 
-/// Vehicles of more motors make up for a weak one with several.
-pub const FOUR: usize = 4;
 /// Thrusts are in balance over this time, s.
 const BALANCE_S: f64 = 2.0;
 /// Such times that are taken for independent of each other, together.

@@ -7,6 +7,7 @@ use super::model::Model;
 use super::predict::Predicted;
 use super::record::FlightRecord;
 use crate::base::stats::mean;
+use crate::insight::diagnose::motor_loop::MotorsLate;
 use crate::insight::estimate::gram::Stretch;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -44,6 +45,8 @@ pub struct Problem {
     pub blocks: usize,
     /// Where later flights may differ from the others.
     pub contrast: Option<Contrast>,
+    /// How late the motors' outputs are, and what they do, flight by flight; nothing where that is not known.
+    pub late: Vec<MotorsLate>,
 }
 
 /// A prediction of every flight.
@@ -52,7 +55,8 @@ pub type Predictions = Vec<Predicted>;
 impl Problem {
     pub fn new(model: Model, records: Vec<FlightRecord>) -> Self {
         let rows = Default::default();
-        let mut out = Self { model, records, rows, measured: Default::default(), blocks: 0, contrast: None };
+        let (measured_rows, late) = (Default::default(), Vec::new());
+        let mut out = Self { model, records, rows, measured: measured_rows, blocks: 0, contrast: None, late };
         let start = out.predict(&out.model.base);
         let gravity = out.model.vehicle().gravity_m_s2;
         out.blocks = out.records.iter().filter_map(|r| r.block.last()).map(|b| *b as usize + 1).max().unwrap_or(0);
@@ -85,6 +89,11 @@ impl Problem {
     /// By how much the odometry's clocks were moved to the gyro's, on average, s: positive where its turns came first.
     pub fn moved(&self) -> f64 {
         mean(&self.records.iter().map(|r| r.moved).collect::<Vec<_>>())
+    }
+
+    /// Whether every flight says of a delay, s, that it comes behind what the motors are sent.
+    pub fn is_behind_motors(&self, delay_s: f64) -> bool {
+        !self.late.is_empty() && self.late.iter().all(|late| late.is_behind(delay_s))
     }
 
     /// Where each flight begins on a clock that runs through all of them, s.

@@ -17,7 +17,7 @@ fn at(card: &Card) -> usize {
 }
 
 /// A gyro that comes late, after commands and after the odometry by the same time, is stamped late: one cause, not two
-/// of the same size.
+/// of the same size. So is a whole IMU that is late by more than the motors are.
 pub fn clocks(problem: &Problem, selection: &mut Selection) {
     for (stamped, delayed) in effects::twins(Evidence::OdometryClock) {
         clock(problem, selection, stamped, delayed);
@@ -25,8 +25,8 @@ pub fn clocks(problem: &Problem, selection: &mut Selection) {
     }
 }
 
-/// The same of delays that are the parts of one: what they have in common is the clock's, as far as the odometry was
-/// off by as much, and what one of them has besides is its own.
+/// The same of delays that are the parts of one: what they have in common is the clock's, where the odometry was off by
+/// as much or the motors had no such delay, and what one of them has besides is its own.
 fn common(problem: &Problem, selection: &mut Selection, stamped: &'static Card, delayed: &'static Card) {
     let moved = problem.moved();
     let parts: Vec<&'static Card> = delayed.parts.iter().filter_map(|id| effects::card(id)).collect();
@@ -36,7 +36,7 @@ fn common(problem: &Problem, selection: &mut Selection, stamped: &'static Card, 
     }
     let mut x = selection.point.x.clone();
     let least = parts.iter().map(|part| x[at(part)]).fold(f64::INFINITY, f64::min);
-    if moved == 0.0 || !is_same(least, moved) {
+    if !is_moved(least, moved) && !problem.is_behind_motors(least) {
         return;
     }
     x[at(stamped)] = least;
@@ -54,9 +54,14 @@ fn common(problem: &Problem, selection: &mut Selection, stamped: &'static Card, 
     }
 }
 
-/// Whether a delay is what the odometry was moved by.
-fn is_same(delay: f64, moved: f64) -> bool {
-    (delay - moved).abs() <= SAME_DELAY_S.get() + SAME_DELAY_SHARE.get() * moved.abs()
+/// Whether the odometry was moved, and by this delay.
+fn is_moved(delay: f64, moved: f64) -> bool {
+    moved != 0.0 && is_same(delay, moved)
+}
+
+/// Whether two delays are the same.
+fn is_same(delay: f64, other: f64) -> bool {
+    (delay - other).abs() <= SAME_DELAY_S.get() + SAME_DELAY_SHARE.get() * other.abs()
 }
 
 /// The same of one pair.
@@ -67,7 +72,8 @@ fn clock(problem: &Problem, selection: &mut Selection, stamped: &'static Card, d
     let mut x = selection.point.x.clone();
     let late = x[at(delayed)] + x[at(stamped)];
     let both = selection.added.iter().filter(|a| is_one(a)).count() > 1;
-    if moved == 0.0 || both || !is_same(late, moved) {
+    let is_behind = !delayed.parts.is_empty() && problem.is_behind_motors(late);
+    if both || !(is_moved(late, moved) || is_behind) {
         return;
     }
     (x[at(delayed)], x[at(stamped)]) = (0.0, late);
@@ -81,9 +87,8 @@ fn clock(problem: &Problem, selection: &mut Selection, stamped: &'static Card, d
     }
     selection.added[i] = Added { card: stamped, ties: Vec::new() };
     // The odometry was moved to a gyro that was late itself: its velocity seems late by as much, and is none.
-    selection
-        .added
-        .retain(|a| a.card.role != Role::VelocityLag || (x[at(a.card)] / moved - 1.0).abs() > SAME_LAG_SHARE.get());
+    let is_its = |a: &Added| (x[at(a.card)] / moved - 1.0).abs() <= SAME_LAG_SHARE.get();
+    selection.added.retain(|a| moved == 0.0 || a.card.role != Role::VelocityLag || !is_its(a));
     selection.point = point;
 }
 
