@@ -217,7 +217,7 @@ pub struct Twin {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {
     /// The time by which the odometry's clock had to be moved to the gyro's: a gyro that is stamped late is late
-    /// against the odometry, too.
+    /// against the odometry, too. Of a whole IMU the motors' outputs tell as well: its stamp does not delay them.
     OdometryClock,
     /// What single stick movements leave: the whole of an error or none of it.
     SingleMovements,

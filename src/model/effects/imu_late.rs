@@ -24,7 +24,7 @@ impl Effect for ImuLate {
             CompactNumber::ThrustTime,
         ],
         twin: Some(Twin { effect: "link_delay", told_by: Evidence::OdometryClock }),
-        signature: "rates and forces lag the commands by the same time, and the odometry was off by as much",
+        signature: "rates and forces lag the commands by one time, and motors do not or the odometry was off by it",
         rivals: &["link_delay", "stream_offset", "rate_delay", "thrust_delay"],
         manoeuvre: ("fast stick doublets on every axis, and throttle steps", &["roll-doublets", "throttle-steps"]),
         ..Card::BLANK

@@ -2,18 +2,17 @@
 //! stamp that is late leaves the motors prompt, and lets the vehicle turn and climb late by what they were sent.
 
 use super::outputs::Outputs;
-use super::plant::plants;
+use super::plant::{MeasuredTurns, plants};
 use crate::base::stats::{mean, mean_half_width};
 use crate::flight::Log;
-use crate::flight::series::{held, interpolated, period};
+use crate::flight::series::{held, period};
 use crate::flight::spans::{Span, contain};
 use crate::insight::criteria::rival::{BEFORE_SHARE, BEHIND_SHARE};
 use crate::insight::estimate::gram::dot;
 use crate::insight::prepare::rotors::{columns, mixing};
 
-/// Outputs are compared with those so long before, and rates with theirs, s.
+/// Outputs are compared with those so long before, s.
 const ANSWER_S: f64 = 0.03;
-const TURN_S: f64 = 0.04;
 /// Delays that are tried, s: the first, the last, and the step between two.
 const OF_OUTPUTS_S: [f64; 3] = [-0.004, 0.04, 0.001];
 const OF_TURNS_S: [f64; 3] = [0.0, 0.02, 0.002];
@@ -58,8 +57,9 @@ impl MotorsLate {
 
 /// By how much the mean of what the motors are sent follows the throttle, and half of its 95 % interval, s.
 fn outputs_late(log: &Log, usable: &[Span]) -> Option<(f64, f64)> {
-    let (columns, time) = (columns(&log.motors)?, &log.motors.time_s);
-    let sent: Vec<f64> = (0..time.len()).map(|i| mean(&columns.iter().map(|c| c[i]).collect::<Vec<_>>())).collect();
+    // Often enough, and of two at least.
+    columns(&log.motors)?;
+    let (time, sent) = (&log.motors.time_s, log.motors.means());
     let (mixing, throttle) = (mixing(log), log.setpoint.column(3));
     let fit = |i: usize| contain(usable, time[i]) && !contain(&mixing, time[i]) && sent[i].is_finite();
     let apart = ((ANSWER_S / period(time)).round() as usize).max(1);
@@ -91,22 +91,15 @@ fn outputs_late(log: &Log, usable: &[Span]) -> Option<(f64, f64)> {
 fn turns_late(log: &Log, usable: &[Span]) -> Option<f64> {
     let outputs = Outputs::new(&log.motors, usable)?;
     let plants = plants(&outputs, log)?;
-    let (reach, apart) = (3.0 * period(&log.imu.time_s), outputs.apart(TURN_S));
-    let lags = || (0..LAGS.2).map(|i| LAGS.0 * LAGS.1.powi(i));
+    let lags: Vec<f64> = (0..LAGS.2).map(|i| LAGS.0 * LAGS.1.powi(i)).collect();
     let about = |k: usize| {
-        let gyro = log.imu.column(k);
-        let sums: Vec<Vec<f64>> = lags().map(|lag_s| outputs.lagged(plants[k].pattern, lag_s)[1].clone()).collect();
-        let at_delay = |delay_s: f64| {
-            let then: Vec<f64> = outputs.time.iter().map(|t| t + delay_s).collect();
-            let rate = interpolated(&log.imu.time_s, &gyro, &then, reach);
-            let at = outputs.pairs(apart, |i| outputs.usable[i] && rate[i].is_finite());
-            let moved = |x: &[f64]| at.iter().map(|&i| x[i + apart] - x[i]).collect::<Vec<f64>>();
-            let turned = moved(&rate);
-            let likeness = sums.iter().map(|sum| likeness(&moved(sum), &turned).abs());
-            (likeness.fold(0.0, f64::max), delay_s)
+        let turned = |delay_s: f64| {
+            let turns = MeasuredTurns::new(&outputs, log, k, delay_s);
+            let turned = lags.iter().map(|&lag_s| turns.plant(plants[k].pattern, lag_s, false).turned);
+            (turned.fold(0.0, f64::max), delay_s)
         };
-        let best = steps(OF_TURNS_S).map(at_delay).max_by(|a, b| a.0.total_cmp(&b.0));
-        best.filter(|(like, _)| *like > LIKE).map(|(_, delay_s)| delay_s)
+        let best = steps(OF_TURNS_S).map(turned).max_by(|a, b| a.0.total_cmp(&b.0));
+        best.filter(|(turned, _)| *turned > LIKE * LIKE).map(|(_, delay_s)| delay_s)
     };
     Some(about(0)?.min(about(1)?))
 }
@@ -115,6 +108,7 @@ fn steps([first, last, step]: [f64; 3]) -> impl Iterator<Item = f64> {
     (0..=((last - first) / step).round() as usize).map(move |k| first + step * k as f64)
 }
 
+/// Cosine of the angle between two columns.
 fn likeness(x: &[f64], y: &[f64]) -> f64 {
     dot(x, y) / (dot(x, x) * dot(y, y)).sqrt()
 }
@@ -122,6 +116,45 @@ fn likeness(x: &[f64], y: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flight::motors::row;
+    use crate::insight::diagnose::motor_loop::outputs::PATTERNS;
+
+    /// A minute in which throttle and turns step every 0.2 s: the motors have them late by `before`, the gyro what they
+    /// do, behind a lag of 20 ms, by `behind`, s.
+    fn flown(before: f64, behind: f64) -> Log {
+        const DT: f64 = 0.002;
+        let mut log = Log::default();
+        let mut turning = [0.0; 3];
+        let mut rates = [0.0; 3];
+        let step = |t: f64, k: usize| ((t / 0.2).floor() * (7.3 + 3.1 * k as f64)).sin();
+        for i in 0..30_000 {
+            let t = i as f64 * DT;
+            let (throttle, late) = (0.5 + 0.1 * step(t, 3), t - before);
+            log.setpoint.push(t, [0.0, 0.0, 0.0, throttle]);
+            let wanted: [f64; 3] = std::array::from_fn(|k| 0.04 * step(late + 0.01 * k as f64, k) - 0.01 * rates[k]);
+            let share = |m: usize| (0..3).map(|k| PATTERNS[k][m] * wanted[k]).sum::<f64>();
+            let outputs: Vec<f64> = (0..4).map(|m| ((0.5 + 0.1 * step(late, 3)).powi(2) + share(m)).sqrt()).collect();
+            log.motors.push(t, row(&outputs));
+            for k in 0..3 {
+                turning[k] += (wanted[k] - turning[k]) * (1.0 - (-DT / 0.02f64).exp());
+                rates[k] += 200.0 * turning[k] * DT;
+            }
+            log.imu.push(t + DT + behind, [rates[0], rates[1], rates[2], 0.0, 0.0, 9.8]);
+        }
+        log
+    }
+
+    #[test]
+    fn a_delay_is_measured_where_it_sits() {
+        let of = |before: f64, behind: f64| MotorsLate::new(&flown(before, behind), &[[1.0, 59.0]]).expect("it tells");
+        let (commands, stamp) = (of(0.01, 0.0), of(0.0, 0.01));
+        // Within a period of the log: finer than that a step has no time.
+        assert!((commands.outputs_s - 0.01).abs() < 2e-3 && commands.turns_s < 3e-3, "{commands:?}");
+        assert!(stamp.outputs_s.abs() < 2e-3 && (stamp.turns_s - 0.01).abs() < 3e-3, "{stamp:?}");
+        assert!(commands.is_before(0.01) && stamp.is_behind(0.01), "{commands:?} {stamp:?}");
+        let silent = Log { motors: Default::default(), ..flown(0.0, 0.01) };
+        assert_eq!(MotorsLate::new(&silent, &[[1.0, 59.0]]), None);
+    }
 
     #[test]
     fn a_delay_is_before_the_outputs_or_behind_them_or_nobody_knows() {

@@ -28,7 +28,7 @@ pub struct TurningPlant {
 /// About roll, pitch and yaw. What turns about yaw is led by the rotors' own inertia: beside the outputs their change
 /// counts, behind the lag of the other two axes.
 pub fn plants(outputs: &Outputs, log: &Log) -> Option<[TurningPlant; 3]> {
-    let [roll, pitch, yaw] = [0, 1, 2].map(|k| MeasuredTurns::new(outputs, log, k));
+    let [roll, pitch, yaw] = [0, 1, 2].map(|k| MeasuredTurns::new(outputs, log, k, 0.0));
     let lags: Vec<f64> = (0..LAGS.2).map(|i| LAGS.0 * LAGS.1.powi(i)).collect();
     let (roll, pitch) = (roll.best(&lags, false)?, pitch.best(&lags, false)?);
     let yaw = yaw.best(&[(roll.lag_s * pitch.lag_s).sqrt()], true)?;
@@ -36,7 +36,7 @@ pub fn plants(outputs: &Outputs, log: &Log) -> Option<[TurningPlant; 3]> {
 }
 
 /// Measured turns about an axis.
-struct MeasuredTurns<'a> {
+pub struct MeasuredTurns<'a> {
     outputs: &'a Outputs,
     /// Earlier samples of the pairs that are compared, and how far apart the two are.
     at: Vec<usize>,
@@ -46,9 +46,11 @@ struct MeasuredTurns<'a> {
 }
 
 impl<'a> MeasuredTurns<'a> {
-    fn new(outputs: &'a Outputs, log: &Log, k: usize) -> Self {
+    /// About axis `k`, of a gyro that is late by so much, s.
+    pub fn new(outputs: &'a Outputs, log: &Log, k: usize, late_s: f64) -> Self {
         let reach = 3.0 * period(&log.imu.time_s);
-        let rate = interpolated(&log.imu.time_s, &log.imu.column(k), &outputs.time, reach);
+        let then: Vec<f64> = outputs.time.iter().map(|t| t + late_s).collect();
+        let rate = interpolated(&log.imu.time_s, &log.imu.column(k), &then, reach);
         let apart = outputs.apart(TURN_S);
         let at = outputs.pairs(apart, |i| outputs.usable[i] && rate[i].is_finite());
         let mut turns = Self { outputs, at, apart, measured: Vec::new() };
@@ -69,7 +71,7 @@ impl<'a> MeasuredTurns<'a> {
     }
 
     /// Without the spread of its authority.
-    fn plant(&self, pattern: usize, lag_s: f64, led: bool) -> TurningPlant {
+    pub fn plant(&self, pattern: usize, lag_s: f64, led: bool) -> TurningPlant {
         let [own, mut left] = self.own(pattern, lag_s, led);
         let authority = take_off(&mut left, &own);
         let turned = 1.0 - dot(&left, &left) / dot(&self.measured, &self.measured);

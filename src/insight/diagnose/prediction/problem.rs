@@ -55,8 +55,8 @@ pub type Predictions = Vec<Predicted>;
 impl Problem {
     pub fn new(model: Model, records: Vec<FlightRecord>) -> Self {
         let rows = Default::default();
-        let (measured_rows, late) = (Default::default(), Vec::new());
-        let mut out = Self { model, records, rows, measured: measured_rows, blocks: 0, contrast: None, late };
+        let (seen, late) = (Default::default(), Vec::new());
+        let mut out = Self { model, records, rows, measured: seen, blocks: 0, contrast: None, late };
         let start = out.predict(&out.model.base);
         let gravity = out.model.vehicle().gravity_m_s2;
         out.blocks = out.records.iter().filter_map(|r| r.block.last()).map(|b| *b as usize + 1).max().unwrap_or(0);
