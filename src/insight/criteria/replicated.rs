@@ -16,6 +16,10 @@ criteria! {
     RARE_SHARE = 0.7, Assumed("what is rarely flown is told where it is flown");
     /// Standard deviations that the size of a rarely flown effect has to be.
     RARE_DEVIATIONS = 6.0, Assumed("half as many again as of one that shows all the time");
+    /// Share of all that the flight tells of an effect that stretches hold which show it by themselves, less those that
+    /// contradict, from which it needs no sure size beside what is only suspected.
+    UNANIMOUS_SHARE = 0.9,
+        Assumed("two hovers near the ground, both ten deviations, whose sizes differ twofold by the height's error");
     /// Agreeing stretches on the first half period of an oscillation.
     OSCILLATION_AWAY = 10.0, Assumed(UNRECORDED);
     /// Agreeing stretches on the second.

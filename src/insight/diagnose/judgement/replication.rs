@@ -2,7 +2,7 @@
 
 use crate::insight::criteria::evident::SURE_DEVIATIONS;
 use crate::insight::criteria::replicated::{
-    AGREEING_STRETCHES, RARE_DEVIATIONS, RARE_SHARE, RARE_STRETCHES, STRETCH_DEVIATIONS,
+    AGREEING_STRETCHES, RARE_DEVIATIONS, RARE_SHARE, RARE_STRETCHES, STRETCH_DEVIATIONS, UNANIMOUS_SHARE,
 };
 use crate::insight::diagnose::fitting::score::score;
 use crate::insight::diagnose::selection::fitted::FittedSelection;
@@ -25,6 +25,11 @@ impl Replicated {
     /// Whether many stretches of flight agree.
     pub fn agreed(&self) -> bool {
         self.count >= AGREEING_STRETCHES.get()
+    }
+
+    /// Whether nearly all that tells it agrees, be it of a size that differs: over the ground, with the height's error.
+    pub fn unanimous(&self) -> bool {
+        self.agreed() && self.held >= UNANIMOUS_SHARE.get() && self.sure >= STRETCH_DEVIATIONS.get()
     }
 
     /// Whether it is no more than a chance of many.
