@@ -1,6 +1,6 @@
-//! More thrust close to the ground: f_T is scaled by 1 + k (R / 4 H)^2 ((H + soft) / (h + soft))^2, h of the rotors. With
-//! `soft` = 0 that is 1 + k (R / 4 h)^2 (Cheeseman and Bennett); with more it ends lower at the ground and reaches
-//! higher, as an exponential does.
+//! More thrust close to the ground: f_T is scaled by 1 + k (R / 4 H)^2 ((H + soft) / (h + soft))^2, h of the rotors, H
+//! 0.3 m. With `soft` = 0 that is 1 + k (R / 4 h)^2 (Cheeseman and Bennett); with more it ends lower at the ground and
+//! reaches higher, as an exponential does.
 
 use super::{AerodynamicForces, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;

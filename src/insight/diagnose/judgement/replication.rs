@@ -90,3 +90,22 @@ pub fn stretches(fitted: &FittedSelection, card: &Card) -> Replicated {
     let count = alone.max(score.evidence / own.len() as f64);
     Replicated { count, alone, held: held / all, sure: sure.max(0.0).sqrt() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_nearly_all_stretches_show_needs_no_sure_size() {
+        // Two hovers near the ground, of twice the size the one as the other.
+        let hovers = Replicated { count: 48.0, alone: 48.0, held: 0.93, sure: 3.4 };
+        assert!(hovers.unanimous() && !hovers.evident());
+        for not in [
+            Replicated { held: 0.7, ..hovers },
+            Replicated { sure: 1.6, ..hovers },
+            Replicated { count: 8.0, alone: 8.0, ..hovers },
+        ] {
+            assert!(!not.unanimous(), "{not:?}");
+        }
+    }
+}
