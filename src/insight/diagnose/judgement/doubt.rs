@@ -22,6 +22,7 @@ pub fn all(fitted: &FittedSelection, findings: &mut [Finding]) {
     unshown(fitted, findings);
     unpaid(fitted, findings);
     untimed(fitted, findings);
+    late_gyro::early(findings);
     late_gyro::may_be(fitted.problem.moved(), findings);
 }
 
