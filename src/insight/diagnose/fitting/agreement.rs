@@ -1,7 +1,7 @@
 //! How far attitude and velocity agree with the integrated sensors, without any model of the vehicle.
 
 use super::whiten::Whitener;
-use crate::insight::diagnose::prediction::channels::{PUSH, TURN};
+use crate::insight::diagnose::prediction::channels::{PUSH, RATE, TURN};
 use crate::insight::diagnose::prediction::problem::{ChannelValues, Problem};
 use std::ops::Range;
 
@@ -9,6 +9,13 @@ use std::ops::Range;
 pub fn squares(problem: &Problem, whitener: &Whitener, residual: &ChannelValues) -> f64 {
     let all = whitener.apply(&kinematic(residual), &problem.rows);
     all.iter().flatten().map(|r| r * r).sum()
+}
+
+/// Whitened squares of all that is left but about yaw.
+pub fn squares_but_yaw(problem: &Problem, whitener: &Whitener, residual: &ChannelValues) -> f64 {
+    let mut others = residual.clone();
+    others[RATE + 2].clear();
+    whitener.apply(&others, &problem.rows).iter().flatten().map(|r| r * r).sum()
 }
 
 /// The turns and pushes of `values` alone.

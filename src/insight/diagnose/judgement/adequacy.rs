@@ -74,7 +74,9 @@ pub fn doubt(
     let small = |l: &&Finding| measured && odds(finding) < SMALL_BESIDE.get() * odds(l);
     // No estimator is late by one lag, or by one delay: what it leaves is small, and is its own.
     let estimated = |l: &Finding| l.has(Role::VelocityLag) && l.status != Status::Suspected;
-    if let Some(largest) = largest.filter(small)
+    // What an axis has of its own is no form of what all have.
+    let of_all = |l: &&Finding| !l.cards().any(|(card, _)| card.apart_from.contains(&finding.effect));
+    if let Some(largest) = largest.filter(small).filter(of_all)
         && (estimated(largest) || unexplained.iter().any(|s| s.channel == finding.channel))
     {
         return Some(format!("small beside {}, whose form it may make up for", largest.name));
