@@ -18,14 +18,17 @@ pub fn or_parts(finding: &mut Finding) {
 /// known, in every flight, they tell: what they have as well is no stamp, and what they do not have is no command's.
 pub fn in_common(late: &[MotorsLate], findings: &mut [Finding]) {
     for whole in effects::cards().filter(|card| !card.parts.is_empty()) {
-        let named = |id: &&str| findings.iter().position(|f| f.effect == *id && f.status != Status::Suspected);
+        let sure = |f: &Finding| f.status != Status::Suspected;
+        // By itself, or as what another one may be.
+        let said = |id: &str| findings.iter().any(|f| sure(f) && f.members.contains(&id));
+        let named = |id: &&str| findings.iter().position(|f| f.effect == *id).filter(|_| said(id));
         let Some(parts) = whole.parts.iter().map(named).collect::<Option<Vec<usize>>>() else { continue };
         let size = |i: &usize| {
             let first = effects::card(findings[*i].effect).map_or("", |card| card.parameters[0].name);
             findings[*i].parameters.get(first).map_or(0.0, |value| value.value)
         };
         let smaller = parts.into_iter().min_by(|a, b| size(a).total_cmp(&size(b)));
-        if let Some(i) = smaller {
+        if let Some(i) = smaller.filter(|i| sure(&findings[*i])) {
             let (delay_s, finding) = (size(&i), &mut findings[i]);
             let any = |is: fn(&MotorsLate, f64) -> bool| late.iter().any(|l| is(l, delay_s));
             let is_thrust_s = |l: &MotorsLate, delay_s: f64| l.is_prompt(delay_s) && !l.is_behind(delay_s);

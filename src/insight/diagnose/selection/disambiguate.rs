@@ -26,9 +26,8 @@ pub fn clocks(problem: &Problem, selection: &mut Selection) {
 }
 
 /// The same of delays that are the parts of one: what they have in common is the clock's, where the odometry was off by
-/// as much or the motors had no such delay, and what one of them has besides is its own. What the odometry was off by
-/// and the motors had not is the clock's even where a part seems shorter. A yaw that begins before roll and pitch, as
-/// the rotors' inertia makes it, hides the clock's part of its delay and is not asked.
+/// as much or the motors had no such delay, and what one of them has besides is its own. A yaw that begins before roll
+/// and pitch, as the rotors' inertia makes it, hides the clock's part of its delay and is not asked.
 fn common(problem: &Problem, selection: &mut Selection, stamped: &'static Card, delayed: &'static Card) {
     let moved = problem.moved();
     let parts: Vec<&'static Card> = delayed.parts.iter().filter_map(|id| effects::card(id)).collect();
@@ -38,19 +37,14 @@ fn common(problem: &Problem, selection: &mut Selection, stamped: &'static Card, 
     }
     let mut x = selection.point.x.clone();
     let least = parts.iter().map(|part| x[at(part)]).fold(f64::INFINITY, f64::min);
-    let common = if is_moved(least, moved) || problem.is_behind_motors(least) {
-        least
-    } else if moved > SAME_DELAY_S.get() && problem.is_behind_motors(moved) {
-        moved
-    } else {
+    if !is_moved(least, moved) && !problem.is_behind_motors(least) {
         return;
-    };
+    }
     let is_led = |a: &Added| a.card.apart_from.contains(&delayed.id) && selection.point.x[at(a.card)] < 0.0;
     let is_led = selection.added.iter().any(is_led);
-    x[at(stamped)] = common;
-    let is_whole = |part: &&Card| x[at(part)] < common || is_same(x[at(part)], common);
-    let (gone, longer): (Vec<&'static Card>, Vec<_>) = parts.into_iter().partition(is_whole);
-    longer.iter().for_each(|part| x[at(part)] -= common);
+    x[at(stamped)] = least;
+    let (gone, longer): (Vec<&'static Card>, Vec<_>) = parts.into_iter().partition(|part| is_same(x[at(part)], least));
+    longer.iter().for_each(|part| x[at(part)] -= least);
     gone.iter().for_each(|part| x[at(part)] = 0.0);
     let mut free = selection.point.free.clone();
     free.retain(|k| gone.iter().all(|part| at(part) != *k));
