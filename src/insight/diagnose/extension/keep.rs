@@ -152,8 +152,10 @@ pub fn as_written(kept: &FittedSelection, findings: &mut [Finding]) {
 
 /// The least of the named findings that leans on what is only suspected.
 fn leaning<'a>(kept: &FittedSelection, findings: &'a mut [Finding]) -> Option<&'a mut Finding> {
-    let shown = |card| stretches(kept, card);
-    let sure = |card| shown(card).evident() || shown(card).unanimous();
+    let sure = |card| {
+        let shown = stretches(kept, card);
+        shown.evident() || shown.unanimous()
+    };
     let unsure = held(kept, findings).filter(|(f, card)| !f.explained.contains_key(MOVES) && !sure(card));
     unsure.map(|(finding, _)| finding).min_by(|a, b| a.impact.total_cmp(&b.impact))
 }

@@ -1,4 +1,5 @@
-//! How far attitude and velocity agree with the integrated sensors, without any model of the vehicle.
+//! What is left in some of the channels: in attitude and velocity against the integrated sensors, which no model of the
+//! vehicle enters, or in all but yaw.
 
 use super::whiten::Whitener;
 use crate::insight::diagnose::prediction::channels::{PUSH, RATE, TURN};
@@ -7,15 +8,18 @@ use std::ops::Range;
 
 /// Whitened squares of what is left in turns and pushes.
 pub fn squares(problem: &Problem, whitener: &Whitener, residual: &ChannelValues) -> f64 {
-    let all = whitener.apply(&kinematic(residual), &problem.rows);
-    all.iter().flatten().map(|r| r * r).sum()
+    whitened(problem, whitener, &kinematic(residual))
 }
 
 /// Whitened squares of all that is left but about yaw.
 pub fn squares_but_yaw(problem: &Problem, whitener: &Whitener, residual: &ChannelValues) -> f64 {
     let mut others = residual.clone();
     others[RATE + 2].clear();
-    whitener.apply(&others, &problem.rows).iter().flatten().map(|r| r * r).sum()
+    whitened(problem, whitener, &others)
+}
+
+fn whitened(problem: &Problem, whitener: &Whitener, residual: &ChannelValues) -> f64 {
+    whitener.apply(residual, &problem.rows).iter().flatten().map(|r| r * r).sum()
 }
 
 /// The turns and pushes of `values` alone.

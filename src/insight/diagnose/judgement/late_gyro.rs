@@ -19,7 +19,7 @@ pub fn may_be(moved: f64, findings: &mut [Finding]) {
 
 /// A gyro that is early beside its attitude is an attitude that is late, as estimators are.
 pub fn early(findings: &mut [Finding]) {
-    let is_early = |f: &Finding| f.parameters.values().any(|v| v.value < 0.0);
+    let is_early = |f: &Finding| f.status != Status::Suspected && f.parameters.values().any(|v| v.value < 0.0);
     for finding in findings.iter_mut().filter(|f| f.has(Role::GyroLate) && is_early(f)) {
         finding.suspect("the attitude is later than the gyro, as estimators are: the gyro need not be early".into());
     }
