@@ -74,6 +74,16 @@ fn a_whole_imu_that_is_late_is_one_cause() {
     assert!(name == "imu_late" && (delay - 0.008).abs() < 5e-4, "{name} of {delay} s");
 }
 
+/// Rule 2: the same behind motors, where yaw begins before roll and pitch: its delay, less than the stamp, says nothing
+/// against it. It was a late thrust.
+#[test]
+fn an_imu_that_is_late_is_one_cause_where_yaw_is_led() {
+    let diagnosis = said_of([36, 3], 1.0325, 1000.0, ("imu_late", 0.0093));
+    let late = diagnosis.findings.iter().find(|f| f.members.contains(&"imu_late")).expect("a late IMU");
+    assert!(late.effect == "imu_late" && late.status != Status::Suspected, "{late:?}");
+    assert!((late.parameters["delay"].value - 0.0093).abs() < 1e-3, "{:?}", late.parameters);
+}
+
 /// Rule 2: a link that is late is one cause. It was a delay of the rates and one of the thrust.
 #[test]
 fn commands_that_are_late_together_are_one_cause() {

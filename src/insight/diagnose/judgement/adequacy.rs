@@ -101,3 +101,38 @@ pub fn doubt(
         with_time.then(|| format!("what it explains in {} changes during the flight", left.channel))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Structure that matters, but is less than what either finding explains.
+    const LEFT: Structure = Structure {
+        channel: "yaw rate",
+        unit: "rad/s",
+        rms: 1.0,
+        structure_rms: 0.02,
+        coloured_rms: 0.0,
+        along: None,
+        along_share: 0.0,
+        curve: Vec::new(),
+        variance_along: None,
+        variance_ratio: 1.0,
+    };
+
+    #[test]
+    fn what_an_axis_has_of_its_own_makes_no_form_of_all_axes_small() {
+        let own = effects::cards().find(|card| !card.apart_from.is_empty()).expect("one");
+        let of_all = effects::card(own.apart_from[0]).expect("one");
+        let other = effects::cards().find(|c| ![own.id, of_all.id].contains(&c.id) && c.apart_from.is_empty());
+        let explains =
+            |card, share| Finding { channel: "yaw rate", explained: [("yaw rate", share)].into(), ..Finding::of(card) };
+        let why = |largest, small| {
+            let findings = [explains(largest, 0.9), explains(small, 0.01)];
+            doubt(&findings[1], false, &findings, &[LEFT], &[LEFT])
+        };
+        let other = other.expect("one");
+        assert_eq!(why(other, of_all), Some(format!("small beside {}, whose form it may make up for", other.name)));
+        assert_eq!(why(own, of_all), None);
+    }
+}
