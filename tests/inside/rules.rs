@@ -317,6 +317,22 @@ fn a_velocity_that_is_delayed_is_one_cause() {
     assert!((lag.parameters["tau"].value - 0.04).abs() < 0.003, "{:?}", lag.parameters);
 }
 
+/// Rule 1: a motor controller makes up for the voltage about a full battery, where its effect's equation has the middle.
+/// What the thrust's numbers had taken up left nothing to see of it, and the flight had no cause.
+#[test]
+fn a_voltage_that_is_made_up_for_is_told_by_the_base_vehicle() {
+    let mut airframe = Airframe::draw(79);
+    // In a hundred seconds as far as in five minutes.
+    airframe.discharge *= 3.0;
+    let mut made_up = causes::draw("esc_voltage", 1.0, &mut StdRng::seed_from_u64(79));
+    made_up.size = 0.7;
+    let log = other::fly(&airframe, &[made_up], &Setting { seconds: 100.0, ..SETTING });
+    let diagnosis = said(&airframe.nominal(), &log);
+    let found = diagnosis.findings.iter().find(|f| f.effect == "voltage_compensation").expect("a compensation");
+    assert_eq!(found.status, Status::Named);
+    assert!((found.parameters["share"].value - 0.7).abs() < 0.05, "{:?}", found.parameters);
+}
+
 /// Rule 7: small is not unexplained, and needs no name. An IMU that is turned by a sixth of a degree was named.
 #[test]
 fn what_nobody_notices_is_listed_as_small() {

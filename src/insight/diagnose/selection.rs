@@ -3,6 +3,7 @@
 pub mod accident;
 pub mod begin;
 pub mod candidates;
+pub mod caused;
 pub mod disambiguate;
 pub mod fitted;
 pub mod left_over;
@@ -17,7 +18,7 @@ pub mod whole;
 use super::fitting::fit::{self, FitPoint};
 use super::fitting::whiten::Whitener;
 use super::prediction::bends::is_form;
-use super::prediction::numbers::{is_force, span};
+use super::prediction::numbers::span;
 use super::prediction::problem::Problem;
 use crate::model::effects::Card;
 use candidates::Candidate;
@@ -47,20 +48,6 @@ impl Selection {
         let mut x = self.point.x.clone();
         numbers.iter().for_each(|&k| x[k] = problem.model.base[k]);
         Self { point: fit::fit(problem, &self.whitener, &x, &free), ..self }
-    }
-
-    /// The same with an effect in the place of all moves of thrust and drag against the base vehicle, fitted from
-    /// `size`.
-    pub fn with_cause(&self, problem: &Problem, card: &'static Card, size: f64) -> Self {
-        let own = span(card).start;
-        let mut x = self.point.x.clone();
-        (0..x.len()).filter(|k| is_force(*k)).for_each(|k| x[k] = problem.model.base[k]);
-        x[own] = size;
-        let free: Vec<usize> = self.point.free.iter().copied().filter(|k| !is_force(*k)).chain([own]).collect();
-        let mut caused = self.but(problem, &[]);
-        caused.point = fit::fit(problem, &self.whitener, &x, &free);
-        caused.added.push(Added { card, ties: Vec::new() });
-        caused
     }
 
     /// The same without the effects `ids`, and without anything bent, which is no part of a vehicle; fitted again.

@@ -36,7 +36,7 @@ pub struct Card {
     /// Numbers of the compact model that take it up where it is not fitted.
     pub absorbed_by: &'static [CompactNumber],
     /// Whether its equation turns the voltage about the middle of the battery where controllers do about a full one.
-    /// One flight does not tell that from another thrust, two with and without it do.
+    /// Only the base vehicle, or flights without it, tell that from another thrust.
     pub about_full: bool,
     /// Effects of all axes beside which this one is yaw's own share of the same.
     pub apart_from: &'static [&'static str],

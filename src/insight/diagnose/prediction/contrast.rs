@@ -13,16 +13,15 @@ enum Moves {
     By(usize),
     /// Numbers, each by the same share of itself.
     Share(Range<usize>),
-    /// The size of what turns the voltage about the middle of the battery, as if about a full one, so many volts above
-    /// it: the thrust moves too. Below 0 it is of the earlier flights, since only the ratio of what both leave of the
-    /// voltage is known.
-    AboutFull(usize, f64),
+    /// The size of what turns the voltage about the middle of the battery, as if about a full one: the thrust moves too.
+    /// Below 0 it is of the earlier flights, since only the ratio of what both leave of the voltage is known.
+    AboutFull(usize),
 }
 
 impl Moves {
     fn has(&self, k: usize) -> bool {
         match self {
-            Moves::By(own) | Moves::AboutFull(own, _) => *own == k,
+            Moves::By(own) | Moves::AboutFull(own) => *own == k,
             Moves::Share(range) => range.contains(&k),
         }
     }
@@ -51,13 +50,12 @@ impl Contrast {
         let shares = shares.map(Moves::Share);
         let about_full = effects::cards().filter(|card| card.about_full).map(|card| span(card).start);
         let about_full: Vec<usize> = about_full.collect();
-        let volts = model.vehicle().battery.full_v - model.middle_v();
-        let by = |k: usize| if about_full.contains(&k) { Moves::AboutFull(k, volts) } else { Moves::By(k) };
+        let by = |k: usize| if about_full.contains(&k) { Moves::AboutFull(k) } else { Moves::By(k) };
         let moves: Vec<Moves> = shares.chain((DRAG.end..FORMS).map(by)).collect();
         let first = model.numbers.len();
         for moved in &moves {
             let number = match moved {
-                Moves::By(k) | Moves::AboutFull(k, _) => {
+                Moves::By(k) | Moves::AboutFull(k) => {
                     let n = model.numbers[*k].clone();
                     let width = n.high - n.low;
                     ModelNumber { low: -width, high: width, ..n }
@@ -91,13 +89,10 @@ impl Contrast {
             match moves {
                 Moves::By(k) if later => own.to_mut()[*k] = within(x[*k] + by, &model.numbers[*k]),
                 Moves::Share(range) if later => range.clone().for_each(|k| own.to_mut()[k] = x[k] * (1.0 + by)),
-                Moves::AboutFull(k, volts) if later == (*by > 0.0) => {
+                Moves::AboutFull(k) if later == (*by > 0.0) => {
                     let own = own.to_mut();
                     own[*k] = (x[*k] + by.abs()).min(model.numbers[*k].high);
-                    // What the thrust has of the voltage, by itself and times the command.
-                    for i in 0..2 {
-                        own[THRUST.start + i] += by.abs() * volts * own[THRUST.start + 4 + i];
-                    }
+                    model.about_full(own, by.abs());
                 }
                 _ => {}
             }

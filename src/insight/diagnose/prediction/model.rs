@@ -74,6 +74,16 @@ impl Model {
         0.5 * (self.vehicle.battery.full_v + self.vehicle.battery.empty_v)
     }
 
+    /// Moves the thrust in `x` by what a share of the voltage that is turned about a full battery, and not about its
+    /// middle, makes of it.
+    pub fn about_full(&self, x: &mut [f64], share: f64) {
+        let volts = self.vehicle.battery.full_v - self.middle_v();
+        // What the thrust has of the voltage, by itself and times the command.
+        for i in 0..2 {
+            x[THRUST.start + i] += share * volts * x[THRUST.start + 4 + i];
+        }
+    }
+
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
     }
