@@ -317,8 +317,8 @@ fn a_velocity_that_is_delayed_is_one_cause() {
     assert!((lag.parameters["tau"].value - 0.04).abs() < 0.003, "{:?}", lag.parameters);
 }
 
-/// Rule 1: a motor controller makes up for the voltage about a full battery, where its effect's equation has the middle.
-/// What the thrust's numbers had taken up left nothing to see of it, and the flight had no cause.
+/// Rule 1: a motor controller makes up for the voltage about a full battery, where the effect's equation has the
+/// middle. What the thrust's numbers had taken up left nothing to see of it, and the flight had no cause.
 #[test]
 fn a_voltage_that_is_made_up_for_is_told_by_the_base_vehicle() {
     let mut airframe = Airframe::draw(79);

@@ -19,7 +19,7 @@ criteria! {
     MOVED_DISCHARGE = 0.2, Assumed("randomisation covers less");
     /// Of the voltage's part in the thrust.
     MOVED_VOLTAGE = 0.1, Assumed("randomisation covers less");
-    /// Share of the voltage's part in the thrust that a controller has to make up for, about a full battery, to be named.
+    /// Share of the voltage's part in the thrust that a controller has to make up for, about a full battery.
     COMPENSATED = 0.25, Assumed("a base vehicle from the first minute of a pack is off by 0.15 to 0.18 of it");
     /// Share of the whole move that an effect has to account for to be named as its cause.
     CAUSE_ACCOUNTS = 0.9, Assumed(UNRECORDED);

@@ -9,7 +9,7 @@ use crate::insight::diagnose::fitting::fit::covariance;
 use crate::insight::diagnose::prediction::channels::FORCE;
 use crate::insight::diagnose::prediction::numbers::{THRUST, is_force, span};
 use crate::insight::diagnose::prediction::problem::ChannelValues;
-use crate::insight::diagnose::selection::caused::Way;
+use crate::insight::diagnose::selection::caused::ForceCause;
 use crate::insight::diagnose::selection::fitted::FittedSelection;
 use crate::insight::estimate::gram::Grams;
 use crate::insight::estimate::inverse::inverse;
@@ -27,9 +27,9 @@ pub fn find(fitted: &FittedSelection) -> Option<Finding> {
     let absorbed = |card: &&Card| card.absorbed_by.contains(&CompactNumber::Thrust);
     let unnamed = |card: &&Card| !point.free.contains(&span(card).start);
     let cards: Vec<&'static Card> = effects::cards().filter(absorbed).filter(unnamed).collect();
-    let ways: Vec<Way> = cards.into_iter().flat_map(Way::of).collect();
+    let ways: Vec<ForceCause> = cards.into_iter().flat_map(ForceCause::of).collect();
     let whitener = &fitted.selection.whitener;
-    let column = |way: &Way| {
+    let column = |way: &ForceCause| {
         let size = way.card.parameters[0].typical[0];
         let mut column = change(fitted, *way, size);
         column.iter_mut().flatten().for_each(|d| *d /= size);
@@ -55,7 +55,7 @@ pub fn find(fitted: &FittedSelection) -> Option<Finding> {
 
 /// By how much of the move an effect accounts for, and with which size.
 struct Account {
-    way: Way,
+    way: ForceCause,
     share: f64,
     size: f64,
 }
@@ -91,7 +91,7 @@ impl<'a> Moved<'a> {
 
     /// What the effect of column `c` beside the fitted numbers accounts for; none where its size is not sure or nobody
     /// would notice.
-    fn account(&self, way: Way, sum: &DMatrix<f64>, c: usize) -> Option<Account> {
+    fn account(&self, way: ForceCause, sum: &DMatrix<f64>, c: usize) -> Option<Account> {
         let n = self.everything.nrows();
         let absorbed = &self.everything * Grams::pick(sum, &(0..n).collect::<Vec<_>>(), &[n + c]);
         let direction = DVector::from_iterator(self.main.len(), self.main.iter().map(|&i| absorbed[(i, 0)]));
@@ -140,13 +140,13 @@ fn finding(fitted: &FittedSelection, best: &Account, near: Vec<&'static str>) ->
 }
 
 /// By how much an effect of that size changes the vertical specific force, root mean square: m/s after a second of it.
-fn pushes(fitted: &FittedSelection, way: Way, size: f64) -> f64 {
+fn pushes(fitted: &FittedSelection, way: ForceCause, size: f64) -> f64 {
     mean(&change(fitted, way, size)[FORCE + 2].iter().map(|d| d * d).collect::<Vec<_>>()).sqrt()
 }
 
 /// Change of the prediction by an effect of that size in the base vehicle: what fitted numbers have taken up of it
 /// leaves nothing to change in them.
-fn change(fitted: &FittedSelection, way: Way, size: f64) -> ChannelValues {
+fn change(fitted: &FittedSelection, way: ForceCause, size: f64) -> ChannelValues {
     let problem = fitted.problem;
     let [without, with] = [0.0, size].map(|size| way.numbers(&problem.model, &fitted.point().x, size));
     let to: Vec<(usize, f64)> = (0..with.len()).filter(|&k| with[k] != without[k]).map(|k| (k, with[k])).collect();

@@ -13,8 +13,8 @@ enum Moves {
     By(usize),
     /// Numbers, each by the same share of itself.
     Share(Range<usize>),
-    /// The size of what turns the voltage about the middle of the battery, as if about a full one: the thrust moves too.
-    /// Below 0 it is of the earlier flights, since only the ratio of what both leave of the voltage is known.
+    /// The size of what turns the voltage about the middle of the battery, as if about a full one: the thrust moves
+    /// too. Below 0 it is of the earlier flights, since only the ratio of what both leave of the voltage is known.
     AboutFull(usize),
 }
 

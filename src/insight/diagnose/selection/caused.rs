@@ -9,13 +9,13 @@ use crate::model::effects::Card;
 
 /// How an effect may act on the base vehicle.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
+pub struct ForceCause {
     pub card: &'static Card,
     /// Whether it turns the voltage about a full battery, and not about its middle: the thrust moves too.
     pub about_full: bool,
 }
 
-impl Way {
+impl ForceCause {
     /// All ways of an effect.
     pub fn of(card: &'static Card) -> impl Iterator<Item = Self> {
         let about_full: &[bool] = if card.about_full { &[false, true] } else { &[false] };
@@ -41,12 +41,13 @@ impl Selection {
         let own = span(card).start;
         let free: Vec<usize> = self.point.free.iter().copied().filter(|k| !is_force(*k)).chain([own]).collect();
         let fitted = |x: &[f64]| fit::fit(problem, &self.whitener, x, &free);
-        let fit = |way: Way| -> FitPoint {
+        let fit = |way: ForceCause| -> FitPoint {
             let point = fitted(&way.numbers(&problem.model, &self.point.x, size));
             // The thrust was moved for the size that it began with.
             if way.about_full { fitted(&way.numbers(&problem.model, &point.x, point.x[own])) } else { point }
         };
-        let point = Way::of(card).map(fit).min_by(|a, b| a.total().total_cmp(&b.total())).expect("one way at least");
+        let point =
+            ForceCause::of(card).map(fit).min_by(|a, b| a.total().total_cmp(&b.total())).expect("one way at least");
         let mut caused = Self { point, ..self.but(problem, &[]) };
         caused.added.push(Added { card, ties: Vec::new() });
         caused
