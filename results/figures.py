@@ -69,7 +69,7 @@ def first_named(row):
 def confusion():
     """Of logs with one cause or none of the third truth: what is hidden, against what is named first."""
     counts = collections.Counter()
-    for row in tables.other_latest():
+    for row in tables.other_latest("300"):
         if row["group"] in ("none", "one", "outside", "small"):
             hidden = row["hidden"].split("=")[0] or "nothing"
             hidden = f"{hidden} (small)" if row["group"] == "small" else hidden

@@ -333,6 +333,23 @@ fn a_voltage_that_is_made_up_for_is_told_by_the_base_vehicle() {
     assert!((found.parameters["share"].value - 0.7).abs() < 0.05, "{:?}", found.parameters);
 }
 
+/// Rule 6: a base vehicle from the first minute of a pack is off by a sixth of the voltage's part in its thrust. That has
+/// no name; a pack that tires beyond it has one, where the error of the base had hidden it.
+#[test]
+fn a_thrust_that_fades_is_told_from_what_a_base_vehicle_is_off_by() {
+    let mut airframe = Airframe::draw(79);
+    airframe.discharge *= 3.0;
+    let mut worn = causes::draw("worn_pack", 1.0, &mut StdRng::seed_from_u64(79));
+    worn.size = 0.05;
+    for (causes, named) in [(vec![], false), (vec![worn], true)] {
+        let log = other::fly(&airframe, &causes, &Setting { seconds: 100.0, ..SETTING });
+        let diagnosis = said(&airframe.nominal(), &log);
+        let moves = ["thrust_fade", "voltage_compensation", "mass_or_density", "throttle_offset"];
+        let said = names(&diagnosis).into_iter().filter(|name| moves.contains(name)).collect::<Vec<_>>();
+        assert_eq!(said, if named { vec!["thrust_fade"] } else { vec![] });
+    }
+}
+
 /// Rule 7: small is not unexplained, and needs no name. An IMU that is turned by a sixth of a degree was named.
 #[test]
 fn what_nobody_notices_is_listed_as_small() {

@@ -91,11 +91,18 @@ pub fn interval(value: f64, low: f64, high: f64) -> String {
     format!("{value} ({low} to {high})")
 }
 
+/// Why the extended vehicle goes without what is named.
+fn unwritten(f: &Finding) -> String {
+    f.why.as_ref().map_or(String::new(), |why| format!(" - not in the extended vehicle: {why}"))
+}
+
 fn paragraph(f: &Finding) -> String {
     let values = f.parameters.iter().map(|(name, v)| format!("{name} {} {}", interval(v.value, v.low, v.high), v.unit));
     let status = match f.status {
-        Status::Named => String::new(),
-        Status::NamedSet => format!(" - or {}: these flights do not tell them apart", f.members[1..].join(", ")),
+        Status::Named => unwritten(f),
+        Status::NamedSet => {
+            format!(" - or {}: these flights do not tell them apart{}", f.members[1..].join(", "), unwritten(f))
+        }
         Status::Suspected => format!(" - suspected only: {}", f.why.as_deref().unwrap_or("")),
     };
     let explained: Vec<String> =

@@ -20,6 +20,10 @@ criteria! {
     /// contradict, from which it needs no sure size beside what is only suspected.
     UNANIMOUS_SHARE = 0.9,
         Assumed("two hovers near the ground, both ten deviations, whose sizes differ twofold by the height's error");
+    /// Visits of the ground of which nearly all have to show an effect of it to be evident without a sure size.
+    GROUND_VISITS = 2.0, Assumed("the height's error of one visit says nothing of the next");
+    /// Stretches between two visits.
+    VISITS_APART = 5.0, Assumed("an estimator's memory is shorter than 10 s");
     /// Agreeing stretches on the first half period of an oscillation.
     OSCILLATION_AWAY = 10.0, Assumed(UNRECORDED);
     /// Agreeing stretches on the second.

@@ -38,6 +38,9 @@ pub struct Card {
     /// Whether its equation turns the voltage about the middle of the battery where controllers do about a full one.
     /// Only the base vehicle, or flights without it, tell that from another thrust.
     pub about_full: bool,
+    /// Whether it goes with the height, whose errors in an estimate change its size several-fold from one visit to the
+    /// next.
+    pub by_height: bool,
     /// Effects of all axes beside which this one is yaw's own share of the same.
     pub apart_from: &'static [&'static str],
     /// Which part of a flight controller's answer it is, where identification looks for it.
@@ -78,6 +81,7 @@ impl Card {
         role: Role::InStages,
         absorbed_by: &[],
         about_full: false,
+        by_height: false,
         apart_from: &[],
         controller: None,
         twin: None,

@@ -19,6 +19,7 @@ impl Effect for GroundEffect {
         parameters: &[EffectParameter { name: "k", unit: "1", low: 0.0, high: 90.0, typical: [2.0, 18.0] }],
         writes: &[Quantity::SpecificForce],
         channels: &[ResidualChannel::Force],
+        by_height: true,
         signature: "vertical specific force grows with thrust over height squared below half a metre",
         manoeuvre: ("hovering a hand above the ground, and landings", &["low-hover"]),
         ..Card::BLANK

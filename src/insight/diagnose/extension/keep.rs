@@ -4,15 +4,17 @@ use super::extend;
 use super::own_numbers::{like, own, unpaid};
 use super::worse::{self, Than, Unextended, Worse};
 use crate::base::check::Check;
-use crate::insight::diagnose::judgement::cause::MOVES;
+use crate::insight::criteria::drifted::MOVED_THRUST;
+use crate::insight::criteria::unseen::STANDS_ELSEWHERE;
 use crate::insight::diagnose::judgement::finding::{Finding, Status};
 use crate::insight::diagnose::judgement::replication::stretches;
 use crate::insight::diagnose::judgement::shown;
 use crate::insight::diagnose::prediction::channels::LIFT;
+use crate::insight::diagnose::prediction::numbers::{THRUST, span};
 use crate::insight::diagnose::prediction::problem::Problem;
 use crate::insight::diagnose::selection::Selection;
 use crate::insight::diagnose::selection::fitted::FittedSelection;
-use crate::model::effects::{self, Card, EffectKind, MODEL, Role};
+use crate::model::effects::{self, Card, CompactNumber, EffectKind, MODEL, Role};
 
 /// More than any share by which a part is worse.
 const OVER_ALL: f64 = 1e6;
@@ -29,8 +31,13 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
     let mut before_blame: Option<(Selection, Option<String>, Vec<Finding>)> = None;
     loop {
         let kept = Remaining::of(&reference, selection, findings, &given);
-        if let Some(finding) = leaning(&FittedSelection::new(problem, &kept.selection), findings) {
+        let fitted = FittedSelection::new(problem, &kept.selection);
+        if let Some(finding) = leaning(&fitted, findings) {
             finding.suspect("its size is not sure without what is only suspected".into());
+            continue;
+        }
+        if let Some(finding) = of_the_base(&fitted, findings) {
+            finding.suspect("the base vehicle may be off by as much: these flights do not tell its thrust".into());
             continue;
         }
         if kept.wrong() == 0.0 {
@@ -66,7 +73,7 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
             finding.with.clear();
             continue;
         }
-        let Some(finding) = named(findings).filter(|f| !f.explained.contains_key(MOVES)).find(blamed) else {
+        let Some(finding) = named(findings).filter(|f| f.cause.is_none() && f.why.is_none()).find(blamed) else {
             let (kept, why, as_they_were) = before_blame.unwrap_or((kept.selection, why, as_they_were));
             findings.clone_from_slice(&as_they_were);
             let all = [like(problem, 0), like(problem, LIFT)].concat();
@@ -75,18 +82,28 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
             return groups.iter().find_map(|group| no_worse(group)).map_or((kept, why), |kept| (kept, None));
         };
         before_blame.get_or_insert((kept.selection, why, as_they_were));
-        finding.suspect(match rise {
+        let why = match rise {
             Some(rise) => format!("{UNSEEN} makes {rise}"),
             None => "at rest the pack would be above the voltages that the thrust is told at".into(),
-        });
+        };
+        // What explains most of another channel is there all the same, and what each visit of the ground shows too: only
+        // its size is wrong for the next.
+        let worse = kept.worse.as_ref().map(|worse| worse.channel);
+        let elsewhere = |(c, share): (&&str, &f64)| Some(*c) != worse && *share > STANDS_ELSEWHERE.get();
+        let by_height = effects::card(finding.effect).is_some_and(|card| card.by_height);
+        if by_height || finding.explained.iter().any(elsewhere) {
+            finding.why = Some(why);
+        } else {
+            finding.suspect(why);
+        }
     }
 }
 
 /// The selection with the named cause of all moves of thrust and drag in their place, where that is no worse.
 fn with_cause(reference: &Unextended, selection: &Selection, findings: &mut [Finding]) -> Option<Selection> {
-    let cause = named(findings).find(|f| f.explained.contains_key(MOVES))?;
-    let card = effects::card(cause.effect)?;
-    let caused = selection.with_cause(reference.problem, card, cause.parameters.get(card.parameters[0].name)?.value);
+    let (cause, way) = named(findings).find_map(|f| Some((&*f, f.cause?)))?;
+    let size = cause.parameters.get(way.card.parameters[0].name)?.value;
+    let caused = selection.with_cause(reference.problem, way, size);
     let wrong = |selection| Remaining::of(reference, selection, findings, &[]).wrong();
     (wrong(&caused) <= wrong(selection)).then_some(caused)
 }
@@ -126,14 +143,14 @@ impl Remaining {
     }
 }
 
-/// Effects of the selection that are no part of the extended vehicle's fit: what is suspected, and of the simulator's
-/// whatever is not named, such as what is too small to matter. What the sensors are off by stays with the flights. Lost
+/// Effects of the selection that are no part of the extended vehicle's fit: what is suspected or makes unseen flight
+/// worse, and of the simulator's whatever is not named, such as what is too small to matter. What the sensors are off by stays with the flights. Lost
 /// commands are outliers: the fit hears those that arrive, and no mean delay of the others.
 fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
     let of = |f: &&Finding, card: &Card| f.cards().any(|(own, _)| own.id == card.id);
-    let status = |card: &Card| findings.iter().find(|f| of(f, card)).map(|f| f.status);
-    let out = |card: &&'static Card| match status(card) {
-        Some(status) => status == Status::Suspected,
+    let finding = |card: &Card| findings.iter().find(|f| of(f, card));
+    let out = |card: &&'static Card| match finding(card) {
+        Some(finding) => finding.status == Status::Suspected || finding.why.is_some(),
         None => MODEL.iter().any(|of_vehicle| of_vehicle.id == card.id),
     };
     let unheard = |card: &&'static Card| card.role == Role::CommandsLost || out(card);
@@ -156,8 +173,22 @@ fn leaning<'a>(kept: &FittedSelection, findings: &'a mut [Finding]) -> Option<&'
         let shown = stretches(kept, card);
         shown.evident() || shown.unanimous()
     };
-    let unsure = held(kept, findings).filter(|(f, card)| !f.explained.contains_key(MOVES) && !sure(card));
+    let unsure = held(kept, findings).filter(|(f, card)| f.cause.is_none() && !sure(card));
     unsure.map(|(finding, _)| finding).min_by(|a, b| a.impact.total_cmp(&b.impact))
+}
+
+/// What pushes by less than the thrust of a base vehicle is off by, where the flights do not tell the thrust curve.
+fn of_the_base<'a>(kept: &FittedSelection, findings: &'a mut [Finding]) -> Option<&'a mut Finding> {
+    let point = kept.point();
+    let told = point.free.iter().any(|k| THRUST.contains(k));
+    let off = MOVED_THRUST.get() * kept.problem.model.vehicle().gravity_m_s2;
+    // After a second, at its size beside what is kept.
+    let little = |(f, card): &(&mut Finding, &Card)| {
+        let whole = f.parameters.get(card.parameters[0].name).map_or(0.0, |v| v.value);
+        card.absorbed_by.contains(&CompactNumber::Thrust) && f.impact * (point.x[span(card).start] / whole).abs() < off
+    };
+    let mut held = held(kept, findings).filter(|(f, _)| !told && f.cause.is_none());
+    held.find(little).map(|(finding, _)| finding)
 }
 
 /// Findings that are more than suspected.

@@ -2,6 +2,7 @@
 
 use crate::base::stats::NORMAL_95;
 use crate::insight::criteria::shown::MENTIONED_SHARE;
+use crate::insight::diagnose::selection::caused::ForceCause;
 use crate::model::effects::{self, Card, Role};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -79,6 +80,9 @@ pub struct Finding {
     pub stretches: f64,
     /// Share of each channel's residual power that goes with it.
     pub explained: BTreeMap<&'static str, f64>,
+    /// How it acts on the base vehicle, where it is the cause of all that thrust and drag have moved by.
+    #[serde(skip)]
+    pub cause: Option<ForceCause>,
     /// On flight that was not used for fitting: the extended model without this effect, and with it.
     pub gain: BTreeMap<&'static str, Gain>,
     /// How far apart the simulations with and without it are after one second, m/s; for sensors, what the error
@@ -90,7 +94,7 @@ pub struct Finding {
     pub manoeuvre: &'static str,
     /// Names of the manoeuvres of the pilot that show it.
     pub kinds: Vec<&'static str>,
-    /// Why it is no more than suspected.
+    /// Why it is no more than suspected, or, of what is named, why the extended vehicle goes without it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
 }
@@ -110,6 +114,7 @@ impl Finding {
             parameters: BTreeMap::new(),
             stretches: 0.0,
             explained: BTreeMap::new(),
+            cause: None,
             gain: BTreeMap::new(),
             impact: 0.0,
             rivals: effects::rivals(card),

@@ -35,7 +35,7 @@ pub fn judge(fitted: &FittedSelection, added: &Added) -> Judged {
     let point = fitted.point();
     let replicated = stretches(fitted, card);
     let Explained { shares: explained, channel, elsewhere } = explained(fitted, card, &change);
-    let why = if replicated.count < AGREEING_STRETCHES.get() && !replicated.evident() {
+    let doubt = if replicated.count < AGREEING_STRETCHES.get() && !replicated.evident() {
         Some(format!("only {:.0} stretches of flight agree", replicated.count))
     } else if !replicated.evident() {
         Some("its size is not sure enough".into())
@@ -43,8 +43,10 @@ pub fn judge(fitted: &FittedSelection, added: &Added) -> Judged {
         // What the base does better beside it may be an error of the base.
         (elsewhere && explained.is_empty()).then(|| "all that it explains is in what it does not change".into())
     };
+    let of_no_size = || (!replicated.sized()).then(|| "each visit shows another size".into());
+    let why = doubt.clone().or_else(of_no_size);
     let finding = Finding {
-        status: match (&why, added.ties.is_empty()) {
+        status: match (&doubt, added.ties.is_empty()) {
             (Some(_), _) => Status::Suspected,
             (None, true) => Status::Named,
             (None, false) => Status::NamedSet,

@@ -84,6 +84,16 @@ impl Model {
         }
     }
 
+    /// Takes a share off what the thrust in `x` has of the voltage, about a full battery, and adds a share to all of it.
+    pub fn off(&self, x: &mut [f64], [voltage, level]: [f64; 2]) {
+        for i in 0..2 {
+            let part = voltage * x[THRUST.start + 4 + i];
+            x[THRUST.start + 4 + i] -= part;
+            x[THRUST.start + i] += self.vehicle.battery.full_v * part;
+        }
+        x[THRUST].iter_mut().for_each(|c| *c *= 1.0 + level);
+    }
+
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
     }

@@ -34,10 +34,15 @@ fn one(rank: usize, f: &Finding) -> Markup {
 
 fn status(f: &Finding) -> String {
     match f.status {
-        Status::Named => "named".into(),
-        Status::NamedSet => "one of several".into(),
+        Status::Named => format!("named{}", unwritten(f)),
+        Status::NamedSet => format!("one of several{}", unwritten(f)),
         Status::Suspected => format!("suspected only: {}", f.why.as_deref().unwrap_or("too little agrees")),
     }
+}
+
+/// Why the extended vehicle goes without what is named.
+fn unwritten(f: &Finding) -> String {
+    f.why.as_ref().map_or(String::new(), |why| format!(", not in the extended vehicle: {why}"))
 }
 
 fn parameter(name: &str, v: &Value) -> Markup {

@@ -6,7 +6,7 @@ use crate::insight::diagnose::prediction::numbers::{place, span};
 use crate::insight::diagnose::prediction::problem::ChannelValues;
 use crate::insight::diagnose::selection::fitted::FittedSelection;
 use crate::insight::estimate::gram::Grams;
-use crate::model::effects::Card;
+use crate::model::effects::{self, Card};
 use nalgebra::DMatrix;
 
 /// Inner products of what effects add to the prediction, whitened.
@@ -18,12 +18,20 @@ pub fn overlap(fitted: &FittedSelection, cards: &[&'static Card]) -> Overlap {
     of(fitted, &cards.iter().map(own).collect::<Vec<_>>())
 }
 
-/// Whether the numbers that could take an effect up have moved against the base vehicle's by its opposite.
+/// Whether what could take an effect up has moved against the base vehicle's by its opposite: the vehicle's numbers, by
+/// themselves or with the other effects that they could take up as well.
 pub fn is_undone(fitted: &FittedSelection, card: &Card) -> bool {
-    let base = &fitted.problem.model.base;
-    let own = span(card).map(|k| (k, base[k])).collect();
-    let moves: Vec<(usize, f64)> = card.absorbed_by.iter().flat_map(|n| place(*n)).map(|k| (k, base[k])).collect();
-    !moves.is_empty() && cancel(&of(fitted, &[own, moves]).0, 0, 1)
+    let from_base = |k: usize| (k, fitted.problem.model.base[k]);
+    let own: Vec<_> = span(card).map(from_base).collect();
+    let numbers: Vec<_> = card.absorbed_by.iter().flat_map(|n| place(*n)).map(from_base).collect();
+    if numbers.is_empty() {
+        return false;
+    }
+    let shares = |other: &&Card| other.id != card.id && other.absorbed_by.iter().any(|n| card.absorbed_by.contains(n));
+    let others = effects::cards().filter(shares).flat_map(span).map(from_base);
+    let all = numbers.iter().copied().chain(others).collect();
+    let parts = of(fitted, &[own, numbers, all]).0;
+    cancel(&parts, 0, 1) || cancel(&parts, 0, 2)
 }
 
 /// Of changes of the fitted numbers from these values to what they are.
