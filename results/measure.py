@@ -46,7 +46,7 @@ COMMANDS = {
     "race": ([], "0.5 h", f"{BENCH} --n 12 --seed 34 --tier matched --style race --jobs 2"),
     "other": ([], "1.5 h", f"{BENCH} --tier other --n 300 --seed 30 --seconds 100 --jobs 2 --extended "
               "--csv results/other-truth.csv"),
-    "other-300s": ([], "3.5 h", f"{BENCH} --tier other --n 300 --seed 38 --seconds 300 --jobs 2 --extended "
+    "other-300s": ([], "3.5 h", f"{BENCH} --tier other --n 300 --seed 39 --seconds 300 --jobs 2 --extended "
                    "--csv results/other-truth.csv"),
     "rotorpy-diagnosis": ([], "5 min", "python3 tests/python/rotorpy_diagnosis.py target/release/racer "
                           "results/rotorpy-diagnosis.csv"),

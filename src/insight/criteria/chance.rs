@@ -38,6 +38,8 @@ criteria! {
     GUST_ONE_WAY = 0.33, Assumed("gusts of three seconds have 0.27, winds that turn in the third truth 0.38 and more");
     /// Gusts are so many times what the errors of the logged velocity look like in the forces.
     ESTIMATOR_RATIO = 2.0, Assumed("how the drag changes with the speed is known to a factor of two");
+    /// Share of what the horizontal forces remember that has to be left beside what goes with the vehicle's own speed.
+    GUST_OWN = 0.5, Assumed("linear drags and one by the root leave 0 to 0.4 of it");
     /// Structure beside the gusts that is more than they leave.
     GUST_STRUCTURE = 0.7, Assumed(UNRECORDED);
 }

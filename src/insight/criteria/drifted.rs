@@ -21,10 +21,11 @@ criteria! {
     MOVED_VOLTAGE = 0.1, Assumed("randomisation covers less");
     /// Share of the voltage's part in the thrust that a controller has to make up for, about a full battery.
     COMPENSATED = 0.25, Assumed("a base vehicle from the first minute of a pack is off by 0.15 to 0.18 of it");
-    /// Share of the whole move that an effect has to account for to be named as its cause, with what a base vehicle is
-    /// off by without one.
-    CAUSE_ACCOUNTS = 0.75, Assumed("worn packs and hot magnets 0.78 to 0.93; the rest is the curve's form");
-    /// Share of what such errors of the base leave that it has to account for.
+    /// Share of the whole move that an effect has to account for to be named as its cause.
+    CAUSE_ACCOUNTS = 0.9, Assumed(UNRECORDED);
+    /// The same with what a base vehicle is off by without a cause, where the effect is worth more than that.
+    CAUSE_BESIDE = 0.75, Assumed("worn packs and hot magnets 0.78 to 0.93; the rest is the curve's form");
+    /// Share of what such errors of the base leave that it has to account for then.
     CAUSE_NEEDED = 0.4, Assumed("worn packs and hot magnets 0.60 to 0.73, clean logs 0.08 to 0.17");
     /// So many times what the best leaves of the move is left by causes that are a tie with it.
     CAUSE_TIE = 2.0, Assumed(UNRECORDED);

@@ -5,7 +5,7 @@ mod moved;
 
 use super::finding::{Finding, Status, Value};
 use crate::base::stats::mean;
-use crate::insight::criteria::drifted::{CAUSE_ACCOUNTS, CAUSE_TIE, CAUSE_TIE_SHARE};
+use crate::insight::criteria::drifted::{CAUSE_TIE, CAUSE_TIE_SHARE};
 use crate::insight::diagnose::fitting::fit::covariance;
 use crate::insight::diagnose::prediction::channels::FORCE;
 use crate::insight::diagnose::prediction::numbers::span;
@@ -45,7 +45,7 @@ pub fn find(fitted: &FittedSelection) -> Option<Finding> {
     let mut seen = BTreeSet::new();
     found.retain(|account| seen.insert(account.way.card.id));
     let best = found.first()?;
-    if best.share < CAUSE_ACCOUNTS.get() || moved.in_proportion(best.limits) > best.share {
+    if moved.in_proportion(best.limits) > best.share {
         return None;
     }
     let close = |other: &&Account| 1.0 - other.share < CAUSE_TIE.get() * (1.0 - best.share) + CAUSE_TIE_SHARE.get();

@@ -1,10 +1,13 @@
 //! Gusts: specific force that the model does not predict, with a memory of a tenth of a second or more, on both
 //! horizontal axes. They have no mean, and show in the variance.
 
+mod of_speed;
+
 use super::finding::{Finding, Value};
 use crate::base::stats::{NORMAL_95, mean, median};
 use crate::insight::criteria::chance::{
-    ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_MOST_S, GUST_MEMORY_S, GUST_ONE_WAY, GUST_STRUCTURE,
+    ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_MOST_S, GUST_MEMORY_S, GUST_ONE_WAY, GUST_OWN,
+    GUST_STRUCTURE,
 };
 use crate::insight::criteria::flown::GUST_ROWS;
 use crate::insight::criteria::material::MATERIAL_GUST;
@@ -28,7 +31,8 @@ const TOLD_M_S: f64 = 2.0;
 /// Gusts, where the forces' residual holds them; `structure_rms` of it is structure, m/s2.
 pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Option<Finding> {
     let card: &'static Card = effects::acting(Role::RandomForce).next()?;
-    let common = Autocovariance::of(problem, selection)?;
+    let whole = Autocovariance::of(problem, selection, false)?;
+    let common = Autocovariance::of(problem, selection, true)?;
     let (sigma, tau) = (common.sigma(), common.tau());
     let swings = !oscillation::find(problem, &selection.point.residual).is_empty();
     if common.stretches() < AGREEING_STRETCHES.get()
@@ -57,6 +61,9 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
     };
     if steady_air::lasting(problem, selection) > GUST_ONE_WAY.get() {
         found.suspect("it pushes one way for seconds: a wind that turns, or that is not the same everywhere".into());
+    }
+    if common.near() < GUST_OWN.get() * whole.near() {
+        found.suspect("most of it goes with the vehicle's own speed: a drag of another form leaves the same".into());
     }
     Some(found)
 }
@@ -104,14 +111,18 @@ struct Autocovariance {
 }
 
 impl Autocovariance {
-    fn of(problem: &Problem, selection: &Selection) -> Option<Self> {
+    /// Of the residuals, or of what no form of a drag explains of them.
+    fn of(problem: &Problem, selection: &Selection, beside_drag: bool) -> Option<Self> {
         let mut out = Self { lags: [[0.0; 2]; 2], agree: [0.0; 2], blocks: vec![[0.0; 2]; problem.blocks] };
         for axis in 0..2 {
             let (rows, residual) = (&problem.rows[FORCE + axis], &selection.point.residual[FORCE + axis]);
             if rows.len() < GUST_ROWS.count() {
                 return None;
             }
-            let y = capped(residual, CAP, 0.0);
+            let mut y = capped(residual, CAP, 0.0);
+            if beside_drag {
+                y = of_speed::without(problem, selection, axis, &y);
+            }
             for (which, lag) in LAGS.into_iter().enumerate() {
                 let mut blocks = vec![0.0; problem.blocks];
                 let mut n = 0.0;

@@ -2,7 +2,9 @@
 //! a base vehicle is off by without a cause.
 
 use crate::insight::criteria::Criterion;
-use crate::insight::criteria::drifted::{CAUSE_NEEDED, COMPENSATED, MOVED_DEVIATIONS, MOVED_THRUST};
+use crate::insight::criteria::drifted::{
+    CAUSE_ACCOUNTS, CAUSE_BESIDE, CAUSE_NEEDED, COMPENSATED, MOVED_DEVIATIONS, MOVED_THRUST,
+};
 use crate::insight::criteria::material::MATERIAL_SIZE;
 use crate::insight::diagnose::prediction::numbers::is_force;
 use crate::insight::diagnose::selection::caused::ForceCause;
@@ -73,26 +75,35 @@ impl Moved {
         Some(Self { main, by, metric, covariance, errors, everything })
     }
 
-    /// What the effect of column `c` beside the fitted numbers accounts for; none where its size is not sure, nobody
-    /// would notice, or what a base is off by without a cause does nearly as well.
+    /// What the effect of column `c` beside the fitted numbers accounts for, by itself or with what a base is off by
+    /// without a cause; none where it is too little, its size is not sure, or nobody would notice.
     pub fn account(&self, way: ForceCause, sum: &DMatrix<f64>, c: usize) -> Option<Account> {
         let n = self.everything.nrows();
         let absorbed = &self.everything * Grams::pick(sum, &(0..n).collect::<Vec<_>>(), &[n + c]);
         let direction = DVector::from_iterator(self.main.len(), self.main.iter().map(|&i| absorbed[(i, 0)]));
-        let [voltage, level] = ERRORS.map(Criterion::get);
-        let without = self.least(None, [voltage, level])?;
-        // What turns the voltage itself has no other turn of it beside it.
-        let limits = [if way.card.about_full { 0.0 } else { voltage }, level];
-        let with = self.least(Some(&direction), limits)?;
+        let alone = self.least(Some(&direction), [0.0; 2])?;
+        let limits = if self.share(&alone) >= CAUSE_ACCOUNTS.get() { [0.0; 2] } else { ERRORS.map(Criterion::get) };
+        let least = if limits == [0.0; 2] { alone } else { self.beside(way, &direction, limits)? };
         let p = &way.card.parameters[0];
-        let worth = if way.about_full { voltage } else { MATERIAL_SIZE.get() * p.typical[0] };
+        let worth = if way.about_full { COMPENSATED.get() } else { MATERIAL_SIZE.get() * p.typical[0] };
         // Of the other sign it would be no effect: no thrust comes back with time.
-        let possible = with.size >= p.low;
-        let sure = with.size.abs() > worth && with.size.abs() > MOVED_DEVIATIONS.get() * with.sd;
+        let possible = least.size >= p.low;
+        let sure = least.size.abs() > worth && least.size.abs() > MOVED_DEVIATIONS.get() * least.sd;
+        let way = ForceCause { off: least.off, ..way };
+        let account = Account { way, limits, share: self.share(&least), size: least.size, sd: least.sd };
+        (possible && sure).then_some(account)
+    }
+
+    /// The effect of a `direction` beside errors of the base up to `limits`, which is worth more than these, and needed
+    /// beside them.
+    fn beside(&self, way: ForceCause, direction: &DVector<f64>, limits: [f64; 2]) -> Option<Least> {
+        let without = self.least(None, limits)?;
+        // What turns the voltage itself has no other turn of it beside it.
+        let own = if way.card.about_full { [0.0, limits[1]] } else { limits };
+        let with = self.least(Some(direction), own)?;
+        let worth = self.squares(&(direction * with.size)) > self.squares(&(&self.errors[0] * limits[0]));
         let needed = with.left < (1.0 - CAUSE_NEEDED.get()) * without.left;
-        let way = ForceCause { off: with.off, ..way };
-        let account = Account { way, limits, share: self.share(&with), size: with.size, sd: with.sd };
-        (possible && sure && needed).then_some(account)
+        (worth && needed && self.share(&with) >= CAUSE_BESIDE.get()).then_some(with)
     }
 
     /// The share that a change of thrust alone, in proportion, accounts for: that is no effect.
