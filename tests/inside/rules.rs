@@ -333,8 +333,8 @@ fn a_voltage_that_is_made_up_for_is_told_by_the_base_vehicle() {
     assert!((found.parameters["share"].value - 0.7).abs() < 0.05, "{:?}", found.parameters);
 }
 
-/// Rule 6: a base vehicle from the first minute of a pack is off by a sixth of the voltage's part in its thrust. That has
-/// no name; a pack that tires beyond it has one, where the error of the base had hidden it.
+/// Rule 6: a base vehicle from the first minute of a pack is off by a sixth of the voltage's part in its thrust. That
+/// has no name; a pack that tires beyond it has one, where the error of the base had hidden it.
 #[test]
 fn a_thrust_that_fades_is_told_from_what_a_base_vehicle_is_off_by() {
     let mut airframe = Airframe::draw(79);

@@ -31,13 +31,7 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
     let mut before_blame: Option<(Selection, Option<String>, Vec<Finding>)> = None;
     loop {
         let kept = Remaining::of(&reference, selection, findings, &given);
-        let fitted = FittedSelection::new(problem, &kept.selection);
-        if let Some(finding) = leaning(&fitted, findings) {
-            finding.suspect("its size is not sure without what is only suspected".into());
-            continue;
-        }
-        if let Some(finding) = of_the_base(&fitted, findings) {
-            finding.suspect("the base vehicle may be off by as much: these flights do not tell its thrust".into());
+        if suspect_unsure(&FittedSelection::new(problem, &kept.selection), findings) {
             continue;
         }
         if kept.wrong() == 0.0 {
@@ -86,17 +80,32 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
             Some(rise) => format!("{UNSEEN} makes {rise}"),
             None => "at rest the pack would be above the voltages that the thrust is told at".into(),
         };
-        // What explains most of another channel is there all the same, and what each visit of the ground shows too: only
-        // its size is wrong for the next.
-        let worse = kept.worse.as_ref().map(|worse| worse.channel);
-        let elsewhere = |(c, share): (&&str, &f64)| Some(*c) != worse && *share > STANDS_ELSEWHERE.get();
-        let by_height = effects::card(finding.effect).is_some_and(|card| card.by_height);
-        if by_height || finding.explained.iter().any(elsewhere) {
-            finding.why = Some(why);
-        } else {
-            finding.suspect(why);
-        }
+        blame(finding, why, kept.worse.as_ref().map(|worse| worse.channel));
     }
+}
+
+/// Keeps a finding that makes a channel worse out of the vehicle. What explains most of another channel is there all
+/// the same, and so is what each visit of the ground shows: only its size is wrong for the next.
+fn blame(finding: &mut Finding, why: String, worse: Option<&str>) {
+    let elsewhere = |(c, share): (&&str, &f64)| Some(*c) != worse && *share > STANDS_ELSEWHERE.get();
+    let by_height = effects::card(finding.effect).is_some_and(|card| card.by_height);
+    if by_height || finding.explained.iter().any(elsewhere) {
+        finding.why = Some(why);
+    } else {
+        finding.suspect(why);
+    }
+}
+
+/// Whether a named finding was made a suspected one: its size is not sure beside what is kept, or may be the base's.
+fn suspect_unsure(kept: &FittedSelection, findings: &mut [Finding]) -> bool {
+    if let Some(finding) = leaning(kept, findings) {
+        finding.suspect("its size is not sure without what is only suspected".into());
+    } else if let Some(finding) = of_the_base(kept, findings) {
+        finding.suspect("the base vehicle may be off by as much: these flights do not tell its thrust".into());
+    } else {
+        return false;
+    }
+    true
 }
 
 /// The selection with the named cause of all moves of thrust and drag in their place, where that is no worse.
@@ -144,8 +153,9 @@ impl Remaining {
 }
 
 /// Effects of the selection that are no part of the extended vehicle's fit: what is suspected or makes unseen flight
-/// worse, and of the simulator's whatever is not named, such as what is too small to matter. What the sensors are off by stays with the flights. Lost
-/// commands are outliers: the fit hears those that arrive, and no mean delay of the others.
+/// worse, and of the simulator's whatever is not named, such as what is too small to matter. What the sensors are off
+/// by stays with the flights. Lost commands are outliers: the fit hears those that arrive, and no mean delay of the
+/// others.
 fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
     let of = |f: &&Finding, card: &Card| f.cards().any(|(own, _)| own.id == card.id);
     let finding = |card: &Card| findings.iter().find(|f| of(f, card));

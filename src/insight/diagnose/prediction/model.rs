@@ -84,7 +84,7 @@ impl Model {
         }
     }
 
-    /// Takes a share off what the thrust in `x` has of the voltage, about a full battery, and adds a share to all of it.
+    /// Takes a share off what the thrust in `x` has of the voltage, about a full battery, and adds one to all of it.
     pub fn off(&self, x: &mut [f64], [voltage, level]: [f64; 2]) {
         for i in 0..2 {
             let part = voltage * x[THRUST.start + 4 + i];

@@ -1,5 +1,5 @@
-//! How far thrust and drag have moved against the base vehicle, and how much of that one effect accounts for beside what
-//! a base vehicle is off by without a cause.
+//! How far thrust and drag have moved against the base vehicle, and how much of that one effect accounts for, by itself
+//! or beside what a base vehicle is off by without a cause.
 
 use crate::insight::criteria::Criterion;
 use crate::insight::criteria::drifted::{
