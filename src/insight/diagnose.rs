@@ -141,8 +141,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
 fn gains(problem: &Problem, held: &gain::HeldOut, judged: &[Judged], findings: &mut [Finding]) {
     for finding in findings {
         let one = judged.iter().find(|j| j.finding.effect == finding.effect);
-        let is_held = finding.status != Status::Suspected && finding.why.is_none();
-        let all = one.map_or(held.channels.clone(), |j| held.of_one(problem, &j.change, is_held));
+        let all = one.map_or(held.channels.clone(), |j| held.of_one(problem, &j.change, finding.in_vehicle()));
         finding.gain = all.into_iter().filter(|(c, _)| finding.explained.contains_key(c)).collect();
     }
 }

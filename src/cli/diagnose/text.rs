@@ -91,17 +91,13 @@ pub fn interval(value: f64, low: f64, high: f64) -> String {
     format!("{value} ({low} to {high})")
 }
 
-/// Why the extended vehicle goes without what is named.
-fn unwritten(f: &Finding) -> String {
-    f.why.as_ref().map_or(String::new(), |why| format!(" - not in the extended vehicle: {why}"))
-}
-
 fn paragraph(f: &Finding) -> String {
     let values = f.parameters.iter().map(|(name, v)| format!("{name} {} {}", interval(v.value, v.low, v.high), v.unit));
+    let unwritten = f.unwritten().map_or(String::new(), |why| format!(" - {why}"));
     let status = match f.status {
-        Status::Named => unwritten(f),
+        Status::Named => unwritten,
         Status::NamedSet => {
-            format!(" - or {}: these flights do not tell them apart{}", f.members[1..].join(", "), unwritten(f))
+            format!(" - or {}: these flights do not tell them apart{unwritten}", f.members[1..].join(", "))
         }
         Status::Suspected => format!(" - suspected only: {}", f.why.as_deref().unwrap_or("")),
     };

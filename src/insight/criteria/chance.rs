@@ -39,7 +39,7 @@ criteria! {
     /// Gusts are so many times what the errors of the logged velocity look like in the forces.
     ESTIMATOR_RATIO = 2.0, Assumed("how the drag changes with the speed is known to a factor of two");
     /// Share of what the horizontal forces remember that has to be left beside what goes with the vehicle's own speed.
-    GUST_OWN = 0.5, Assumed("linear drags and one by the root leave 0 to 0.4 of it");
+    GUST_OWN = 0.5, Assumed("two linear drags leave no gust of it, one by the root less than half");
     /// Structure beside the gusts that is more than they leave.
     GUST_STRUCTURE = 0.7, Assumed(UNRECORDED);
 }

@@ -20,7 +20,7 @@ criteria! {
     /// Of the voltage's part in the thrust.
     MOVED_VOLTAGE = 0.1, Assumed("randomisation covers less");
     /// Share of the voltage's part in the thrust that a controller has to make up for, about a full battery.
-    COMPENSATED = 0.25, Assumed("a base vehicle from the first minute of a pack is off by 0.15 to 0.18 of it");
+    COMPENSATED = 0.25, Assumed("a base vehicle from the first minute of a pack is off by 0.12 to 0.20 of it");
     /// Share of the whole move that an effect has to account for to be named as its cause.
     CAUSE_ACCOUNTS = 0.9, Assumed(UNRECORDED);
     /// The same with what a base vehicle is off by without a cause, where the effect is worth more than that.

@@ -67,7 +67,7 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
             finding.with.clear();
             continue;
         }
-        let Some(finding) = named(findings).filter(|f| f.cause.is_none() && f.why.is_none()).find(blamed) else {
+        let Some(finding) = named(findings).filter(|f| f.cause.is_none() && f.in_vehicle()).find(blamed) else {
             let (kept, why, as_they_were) = before_blame.unwrap_or((kept.selection, why, as_they_were));
             findings.clone_from_slice(&as_they_were);
             let all = [like(problem, 0), like(problem, LIFT)].concat();
@@ -160,7 +160,7 @@ fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
     let of = |f: &&Finding, card: &Card| f.cards().any(|(own, _)| own.id == card.id);
     let finding = |card: &Card| findings.iter().find(|f| of(f, card));
     let out = |card: &&'static Card| match finding(card) {
-        Some(finding) => finding.status == Status::Suspected || finding.why.is_some(),
+        Some(finding) => !finding.in_vehicle(),
         None => MODEL.iter().any(|of_vehicle| of_vehicle.id == card.id),
     };
     let unheard = |card: &&'static Card| card.role == Role::CommandsLost || out(card);

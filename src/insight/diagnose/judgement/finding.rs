@@ -129,6 +129,17 @@ impl Finding {
         effects::card(self.effect).is_some_and(|card| card.role == role)
     }
 
+    /// Whether the extended vehicle may have a part of it: it is named, and nothing speaks against that.
+    pub fn in_vehicle(&self) -> bool {
+        self.status != Status::Suspected && self.why.is_none()
+    }
+
+    /// Why the extended vehicle goes without what is named.
+    pub fn unwritten(&self) -> Option<String> {
+        let named = self.status != Status::Suspected;
+        self.why.as_ref().filter(|_| named).map(|why| format!("not in the extended vehicle: {why}"))
+    }
+
     /// It is no more than suspected.
     pub fn suspect(&mut self, why: String) {
         (self.status, self.why) = (Status::Suspected, Some(why));

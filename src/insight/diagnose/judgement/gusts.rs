@@ -31,7 +31,6 @@ const TOLD_M_S: f64 = 2.0;
 /// Gusts, where the forces' residual holds them; `structure_rms` of it is structure, m/s2.
 pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Option<Finding> {
     let card: &'static Card = effects::acting(Role::RandomForce).next()?;
-    let whole = Autocovariance::of(problem, selection, false)?;
     let common = Autocovariance::of(problem, selection, true)?;
     let (sigma, tau) = (common.sigma(), common.tau());
     let swings = !oscillation::find(problem, &selection.point.residual).is_empty();
@@ -62,6 +61,7 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
     if steady_air::lasting(problem, selection) > GUST_ONE_WAY.get() {
         found.suspect("it pushes one way for seconds: a wind that turns, or that is not the same everywhere".into());
     }
+    let whole = Autocovariance::of(problem, selection, false)?;
     if common.near() < GUST_OWN.get() * whole.near() {
         found.suspect("most of it goes with the vehicle's own speed: a drag of another form leaves the same".into());
     }

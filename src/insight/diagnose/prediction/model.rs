@@ -85,6 +85,7 @@ impl Model {
     }
 
     /// Takes a share off what the thrust in `x` has of the voltage, about a full battery, and adds one to all of it.
+    /// Eq. 7 stays what it is: c0 and c1 take what c4 and c5 give.
     pub fn off(&self, x: &mut [f64], [voltage, level]: [f64; 2]) {
         for i in 0..2 {
             let part = voltage * x[THRUST.start + 4 + i];

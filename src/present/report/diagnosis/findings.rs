@@ -33,16 +33,12 @@ fn one(rank: usize, f: &Finding) -> Markup {
 }
 
 fn status(f: &Finding) -> String {
+    let unwritten = f.unwritten().map_or(String::new(), |why| format!(", {why}"));
     match f.status {
-        Status::Named => format!("named{}", unwritten(f)),
-        Status::NamedSet => format!("one of several{}", unwritten(f)),
+        Status::Named => format!("named{unwritten}"),
+        Status::NamedSet => format!("one of several{unwritten}"),
         Status::Suspected => format!("suspected only: {}", f.why.as_deref().unwrap_or("too little agrees")),
     }
-}
-
-/// Why the extended vehicle goes without what is named.
-fn unwritten(f: &Finding) -> String {
-    f.why.as_ref().map_or(String::new(), |why| format!(", not in the extended vehicle: {why}"))
 }
 
 fn parameter(name: &str, v: &Value) -> Markup {
