@@ -4,4 +4,5 @@ pub mod extend;
 pub mod keep;
 pub mod own_numbers;
 pub mod unpaid_forms;
+pub mod unsure;
 pub mod worse;

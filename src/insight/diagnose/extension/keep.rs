@@ -2,19 +2,15 @@
 
 use super::extend;
 use super::own_numbers::{like, own, unpaid};
+use super::unsure::{blame, named, suspect_unsure};
 use super::worse::{self, Than, Unextended, Worse};
 use crate::base::check::Check;
-use crate::insight::criteria::drifted::MOVED_THRUST;
-use crate::insight::criteria::unseen::STANDS_ELSEWHERE;
-use crate::insight::diagnose::judgement::finding::{Finding, Status};
-use crate::insight::diagnose::judgement::replication::stretches;
-use crate::insight::diagnose::judgement::shown;
+use crate::insight::diagnose::judgement::finding::Finding;
 use crate::insight::diagnose::prediction::channels::LIFT;
-use crate::insight::diagnose::prediction::numbers::{THRUST, span};
 use crate::insight::diagnose::prediction::problem::Problem;
 use crate::insight::diagnose::selection::Selection;
 use crate::insight::diagnose::selection::fitted::FittedSelection;
-use crate::model::effects::{self, Card, CompactNumber, EffectKind, MODEL, Role};
+use crate::model::effects::{self, Card, EffectKind, MODEL, Role};
 
 /// More than any share by which a part is worse.
 const OVER_ALL: f64 = 1e6;
@@ -84,30 +80,6 @@ pub fn keep(problem: &Problem, selection: &Selection, findings: &mut [Finding]) 
     }
 }
 
-/// Keeps a finding that makes a channel worse out of the vehicle. What explains most of another channel is there all
-/// the same, and so is what each visit of the ground shows: only its size is wrong for the next.
-fn blame(finding: &mut Finding, why: String, worse: Option<&str>) {
-    let elsewhere = |(c, share): (&&str, &f64)| Some(*c) != worse && *share > STANDS_ELSEWHERE.get();
-    let by_height = effects::card(finding.effect).is_some_and(|card| card.by_height);
-    if by_height || finding.explained.iter().any(elsewhere) {
-        finding.why = Some(why);
-    } else {
-        finding.suspect(why);
-    }
-}
-
-/// Whether a named finding was made a suspected one: its size is not sure beside what is kept, or may be the base's.
-fn suspect_unsure(kept: &FittedSelection, findings: &mut [Finding]) -> bool {
-    if let Some(finding) = leaning(kept, findings) {
-        finding.suspect("its size is not sure without what is only suspected".into());
-    } else if let Some(finding) = of_the_base(kept, findings) {
-        finding.suspect("the base vehicle may be off by as much: these flights do not tell its thrust".into());
-    } else {
-        return false;
-    }
-    true
-}
-
 /// The selection with the named cause of all moves of thrust and drag in their place, where that is no worse.
 fn with_cause(reference: &Unextended, selection: &Selection, findings: &mut [Finding]) -> Option<Selection> {
     let (cause, way) = named(findings).find_map(|f| Some((&*f, f.cause?)))?;
@@ -165,55 +137,4 @@ fn left_out(selection: &Selection, findings: &[Finding]) -> Vec<&'static str> {
     };
     let unheard = |card: &&'static Card| card.role == Role::CommandsLost || out(card);
     selection.added.iter().map(|a| a.card).filter(unheard).map(|card| card.id).collect()
-}
-
-/// Sizes in the report are those of the extended vehicle. Lost commands are counted, and not fitted.
-pub fn as_written(kept: &FittedSelection, findings: &mut [Finding]) {
-    for (finding, _) in held(kept, findings) {
-        let own = |(card, prefix): (&Card, String)| {
-            shown::parameters(kept, card).into_iter().map(move |(name, value)| (prefix.clone() + &name, value))
-        };
-        finding.parameters = finding.cards().flat_map(own).collect();
-    }
-}
-
-/// The least of the named findings that leans on what is only suspected.
-fn leaning<'a>(kept: &FittedSelection, findings: &'a mut [Finding]) -> Option<&'a mut Finding> {
-    let sure = |card| {
-        let shown = stretches(kept, card);
-        shown.evident() || shown.unanimous()
-    };
-    let unsure = held(kept, findings).filter(|(f, card)| f.cause.is_none() && !sure(card));
-    unsure.map(|(finding, _)| finding).min_by(|a, b| a.impact.total_cmp(&b.impact))
-}
-
-/// What pushes by less than the thrust of a base vehicle is off by, where the flights do not tell the thrust curve.
-fn of_the_base<'a>(kept: &FittedSelection, findings: &'a mut [Finding]) -> Option<&'a mut Finding> {
-    let point = kept.point();
-    let told = point.free.iter().any(|k| THRUST.contains(k));
-    let off = MOVED_THRUST.get() * kept.problem.model.vehicle().gravity_m_s2;
-    // After a second, at its size beside what is kept.
-    let little = |(f, card): &(&mut Finding, &Card)| {
-        let whole = f.parameters.get(card.parameters[0].name).map_or(0.0, |v| v.value);
-        card.absorbed_by.contains(&CompactNumber::Thrust) && f.impact * (point.x[span(card).start] / whole).abs() < off
-    };
-    let mut held = held(kept, findings).filter(|(f, _)| !told && f.cause.is_none());
-    held.find(little).map(|(finding, _)| finding)
-}
-
-/// Findings that are more than suspected.
-fn named(findings: &mut [Finding]) -> impl Iterator<Item = &mut Finding> {
-    findings.iter_mut().filter(|f| f.status != Status::Suspected)
-}
-
-/// The named findings that `kept` holds and fitted.
-fn held<'a>(
-    kept: &FittedSelection,
-    findings: &'a mut [Finding],
-) -> impl Iterator<Item = (&'a mut Finding, &'static Card)> {
-    let cards: Vec<&'static Card> = kept.selection.added.iter().map(|a| a.card).collect();
-    named(findings).filter(|f| !f.has(Role::CommandsLost)).filter_map(move |f| {
-        let card = effects::card(f.effect)?;
-        cards.iter().any(|held| held.id == card.id).then_some((f, card))
-    })
 }

@@ -17,10 +17,14 @@ pub fn without(problem: &Problem, selection: &Selection, axis: usize, y: &[f64])
         let v = problem.records[f].velocity.each_ref().map(|v| v[i]);
         forms(v, axis, selection.point.state[f].force[i][2].abs())
     };
-    let columns: Vec<[f64; FORMS]> = (0..rows.len()).map(|row| of_row(&row)).collect();
+    less(&(0..rows.len()).map(|row| of_row(&row)).collect::<Vec<_>>(), y)
+}
+
+/// What is left of `y` beside the sum of forms that comes nearest to it.
+fn less(rows: &[[f64; FORMS]], y: &[f64]) -> Vec<f64> {
     let mut gram = DMatrix::zeros(FORMS, FORMS);
     let mut along = DVector::zeros(FORMS);
-    for (forms, y) in columns.iter().zip(y) {
+    for (forms, y) in rows.iter().zip(y) {
         let forms = DVector::from_column_slice(forms);
         gram.ger(1.0, &forms, &forms, 1.0);
         along.axpy(*y, &forms, 1.0);
@@ -28,11 +32,31 @@ pub fn without(problem: &Problem, selection: &Selection, axis: usize, y: &[f64])
     let Some(inner) = inverse(&gram, &[0.0; FORMS]) else { return y.to_vec() };
     let sizes = inner * along;
     let explained = |forms: &[f64; FORMS]| forms.iter().zip(sizes.iter()).map(|(form, size)| form * size).sum::<f64>();
-    columns.iter().zip(y).map(|(forms, y)| y - explained(forms)).collect()
+    rows.iter().zip(y).map(|(forms, y)| y - explained(forms)).collect()
 }
 
 /// By the speed along the axis, its root and its square, the whole speed, the thrust and its root, and the climb.
 fn forms(v: [f64; 3], axis: usize, thrust: f64) -> [f64; FORMS] {
     let (own, all) = (v[axis], v.iter().map(|v| v * v).sum::<f64>().sqrt());
     [1.0, own.abs().sqrt(), own.abs(), all, all * all, thrust, thrust.sqrt(), v[2]].map(|factor| own * factor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A drag with an exponent that is no form of its own leaves nothing, air that moves by itself nearly all.
+    #[test]
+    fn a_drag_of_another_form_goes_with_speed_and_a_gust_does_not() {
+        let at = |i: usize, rate: f64| (0.02 * rate * i as f64).sin();
+        let speeds = |i: usize| [9.0 * at(i, 1.0), 7.0 * at(i, 1.3), 3.0 * at(i, 0.7)];
+        let rows: Vec<_> = (0..3000).map(|i| forms(speeds(i), 0, 12.0 + 5.0 * at(i, 2.1))).collect();
+        let left = |y: &dyn Fn(usize) -> f64| {
+            let y: Vec<f64> = (0..rows.len()).map(y).collect();
+            let squares = |y: &[f64]| y.iter().map(|y| y * y).sum::<f64>();
+            squares(&less(&rows, &y)) / squares(&y)
+        };
+        assert!(left(&|i| speeds(i)[0] * speeds(i)[0].abs().powf(0.7)) < 1e-3);
+        assert!(left(&|i| at(i, 2.9)) > 0.8);
+    }
 }
