@@ -27,7 +27,7 @@ use crate::insight::prepare::data::Data;
 use crate::insight::prepare::flight::PreparedFlight;
 use crate::insight::quality::Quality;
 use crate::model::vehicle::Vehicle;
-use extension::{extend, keep, unpaid_forms, unsure};
+use extension::{extend, keep, names, unpaid_forms};
 use judgement::diagnosis::{Diagnosis, Residual, Verdict};
 use judgement::finding::{Finding, Status};
 use judgement::findings::Judgement;
@@ -97,7 +97,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
     watch("measuring the gain", 0.9);
     let (kept, worse) = keep::keep(&problem, &selection, &mut findings);
     let fitted_kept = FittedSelection::new(&problem, &kept);
-    unsure::as_written(&fitted_kept, &mut findings);
+    names::as_written(&fitted_kept, &mut findings);
     one_motor::name(&driven, &mut findings);
     parts::in_common(&problem.late, &mut findings);
     let held = gain::measure(&problem, &selection, &kept);

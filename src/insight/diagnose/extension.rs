@@ -2,7 +2,7 @@
 
 pub mod extend;
 pub mod keep;
+pub mod names;
 pub mod own_numbers;
 pub mod unpaid_forms;
-pub mod unsure;
 pub mod worse;

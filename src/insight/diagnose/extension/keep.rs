@@ -1,8 +1,8 @@
 //! What of a selection is kept: the extended vehicle's part, in which every name has to hold by itself.
 
 use super::extend;
+use super::names::{blame, named, suspect_unsure};
 use super::own_numbers::{like, own, unpaid};
-use super::unsure::{blame, named, suspect_unsure};
 use super::worse::{self, Than, Unextended, Worse};
 use crate::base::check::Check;
 use crate::insight::diagnose::judgement::finding::Finding;

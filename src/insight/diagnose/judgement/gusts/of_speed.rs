@@ -11,13 +11,12 @@ const FORMS: usize = 8;
 
 /// The residual `y` of the force along `axis` less what forms of a drag explain of it.
 pub fn without(problem: &Problem, selection: &Selection, axis: usize, y: &[f64]) -> Vec<f64> {
-    let rows = &problem.rows[FORCE + axis];
-    let of_row = |row: &usize| {
-        let (f, i) = (rows[*row].flight as usize, rows[*row].sample as usize);
+    let of_rows = problem.rows[FORCE + axis].iter().map(|row| {
+        let (f, i) = (row.flight as usize, row.sample as usize);
         let v = problem.records[f].velocity.each_ref().map(|v| v[i]);
         forms(v, axis, selection.point.state[f].force[i][2].abs())
-    };
-    less(&(0..rows.len()).map(|row| of_row(&row)).collect::<Vec<_>>(), y)
+    });
+    less(&of_rows.collect::<Vec<_>>(), y)
 }
 
 /// What is left of `y` beside the sum of forms that comes nearest to it.
