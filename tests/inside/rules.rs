@@ -175,6 +175,20 @@ fn lost_commands_move_no_response() {
     assert!(diagnosis.drift.iter().all(|d| !d.parameter.starts_with("time_constant")), "{:?}", diagnosis.drift);
 }
 
+/// Rule 3: the attitude tells a gyro that is late from a response that is. A log without one cannot.
+#[test]
+fn a_gyro_that_is_late_has_no_name_of_its_own_without_an_attitude() {
+    let vehicle = Vehicle::draw(66);
+    let mut log = flown(&vehicle, &[("stream_offset", 0.008)]);
+    let late = |log: &Log| {
+        let finding = said(&vehicle, log).findings.into_iter().find(|f| f.members.contains(&"stream_offset"));
+        finding.filter(|f| f.status != Status::Suspected).map(|f| f.members)
+    };
+    assert_eq!(late(&log), Some(vec!["stream_offset"]));
+    log.odometry = Default::default();
+    assert!(late(&log).is_none_or(|members| members.contains(&"rate_delay")));
+}
+
 /// Rule 4: what a wind that turns leaves beside a steady one lasts for seconds, and is no gust; and the wind is the
 /// day's, so that the vehicle does without it.
 #[test]

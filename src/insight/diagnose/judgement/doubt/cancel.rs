@@ -30,8 +30,12 @@ pub fn is_undone(fitted: &FittedSelection, card: &Card) -> bool {
     let shares = |other: &&Card| other.id != card.id && other.absorbed_by.iter().any(|n| card.absorbed_by.contains(n));
     let others = effects::cards().filter(shares).flat_map(span).map(from_base);
     let all = numbers.iter().copied().chain(others).collect();
-    let parts = of(fitted, &[own, numbers, all]).0;
-    cancel(&parts, 0, 1) || cancel(&parts, 0, 2)
+    undone(&of(fitted, &[own, numbers, all]).0)
+}
+
+/// Whether the first part is undone by the second, or by the third, which has the second in it.
+fn undone(gram: &DMatrix<f64>) -> bool {
+    cancel(gram, 0, 1) || cancel(gram, 0, 2)
 }
 
 /// Of changes of the fitted numbers from these values to what they are.
@@ -80,5 +84,18 @@ mod tests {
         assert!(!cancel(&gram(1.0, 1.1, 1.0), 0, 1), "one sign");
         assert!(!cancel(&gram(1.0, 16.0, -3.9), 0, 1), "one is much larger");
         assert!(!cancel(&gram(1.0, 1.0, -0.5), 0, 1), "each has its own");
+    }
+
+    #[test]
+    fn what_no_other_undoes_alone_may_be_undone_by_several() {
+        // Columns: an effect, the vehicle's numbers, and these with another effect.
+        let undone = |numbers: [f64; 2], other: [f64; 2]| {
+            let all = [numbers[0] + other[0], numbers[1] + other[1]];
+            let parts = DMatrix::from_column_slice(2, 3, [[1.0, 0.0], numbers, all].as_flattened());
+            super::undone(&(parts.transpose() * parts))
+        };
+        assert!(undone([-1.0, 0.0], [0.3, 0.3]), "by the numbers alone");
+        assert!(undone([-0.5, 0.8], [-0.5, -0.8]), "by both together");
+        assert!(!undone([-0.5, 0.8], [0.1, 0.0]), "the other has no part in it");
     }
 }
