@@ -165,17 +165,8 @@ def rotorpy():
 
 
 def rotorpy_diagnosis():
-    """Flights in rotorpy with one cause switched on, by what is said of them."""
-    causes = {}
-    for r in rows("rotorpy-diagnosis"):
-        causes.setdefault(r["cause"], []).append(r)
-    body = []
-    for cause, of in causes.items():
-        right = f"{sum(r['right_first'] == '1' for r in of)} of {len(of)}" if cause != "none" else "-"
-        missed = "; ".join(f"{float(r['size']):g}: {r['named'] or 'nothing'}" for r in of if r["right_first"] != "1")
-        body.append((cause, len(of), right, sum(bool(r["wrong"]) for r in of), missed if cause != "none" else ""))
-    head = ["switched on", "flights", "right first", "with a wrong name", "named where it was not right, by size"]
-    return table(head, body)
+    """Flights in rotorpy, by what is hidden."""
+    return groups(rows("rotorpy-diagnosis"))
 
 
 def other_builds(seconds="100"):
@@ -256,23 +247,29 @@ def soak():
 
 def other_groups(seconds="100"):
     """The latest logs of the third truth of so many seconds, by what is hidden."""
-    of = other_latest(seconds)
-    is_in = lambda *groups: [r for r in of if r["group"] in groups]
-    share = lambda which, said: wilson(sum(map(said, which)), len(which)) if which else "-"
+    return groups(other_latest(seconds))
+
+
+def groups(of):
+    """Logs by what is hidden in them, and what was said of it."""
+    is_in = lambda group: [r for r in of if r["group"] == group]
     right = lambda r: r["first_right"] == "1"
     spurious = lambda r: r["spurious"] != ""
     unexplained = lambda r: r["unexplained"] == "1"
     all_found = lambda r: r["found"] == r["of"]
-    body = [
-        ("clean", len(is_in("none")), "a false name", share(is_in("none"), spurious)),
-        ("one", len(is_in("one")), "right first", share(is_in("one"), right)),
-        ("", "", "a wrong name", share(is_in("one"), spurious)),
-        ("two", len(is_in("two")), "one of them first", share(is_in("two"), right)),
-        ("", "", "both named or in a set", share(is_in("two"), all_found)),
-        ("small", len(is_in("small")), "a wrong name", share(is_in("small"), spurious)),
-        ("outside the catalogue", len(is_in("outside")), "told to be unexplained", share(is_in("outside"), unexplained)),
-        ("", "", "a confident name", share(is_in("outside"), spurious)),
-    ]
+    asked = {
+        "none": ("clean", {"a false name": spurious}),
+        "one": ("one", {"right first": right, "a wrong name": spurious}),
+        "two": ("two", {"one of them first": right, "both named or in a set": all_found, "a wrong name": spurious}),
+        "small": ("small", {"a wrong name": spurious}),
+        "outside": ("outside the catalogue", {"told to be unexplained": unexplained, "a confident name": spurious}),
+    }
+    body = []
+    for group, (name, questions) in asked.items():
+        which = is_in(group)
+        for i, (question, said) in enumerate(questions.items() if which else []):
+            share = wilson(sum(map(said, which)), len(which))
+            body.append((name if i == 0 else "", len(which) if i == 0 else "", question, share))
     return table(["hidden", "logs", "", "of them"], body)
 
 
