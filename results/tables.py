@@ -165,8 +165,8 @@ def rotorpy():
 
 
 def rotorpy_diagnosis():
-    """Flights in rotorpy, by what is hidden."""
-    return groups(rows("rotorpy-diagnosis"))
+    """The latest build's flights in rotorpy, by what is hidden."""
+    return groups(latest("rotorpy-diagnosis"))
 
 
 def other_builds(seconds="100"):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `racer diagnose` says of flights in a simulator that nobody here wrote: rotorpy's multirotor.
 
-    python tests/python/rotorpy_diagnosis.py RACER OUT.csv [--n 100] [--seed 1] [--jobs 2] [--only rotor_drag]
+    python tests/python/rotorpy_diagnosis.py RACER OUT.csv [--n 100] [--seed 1] [--build COMMIT] [--only rotor_drag]
 
 A pilot flies doublets, punches, dashes and climbs by body rates and thrust (`cmd_ctbr`). Nothing, one of CAUSES, two of
 them or one of OUTSIDE is switched on in rotorpy's own equations, of a size drawn between two; rates, motors' lag and
@@ -38,8 +38,8 @@ CAUSES = {
     "gusts": (["gusts", "steady_wind"], [2.0, 4.0]),  # m/s
     "load": (["mass_or_density"], [0.1, 0.25]),  # share
 }
-# What the catalogue does not have: rotors that flap, by so much of a rate for each m/s, and in mid-flight drag that grows,
-# or rotors that lose thrust, by such a share.
+# What the catalogue does not have: rotors that flap, by so much of a rate for each m/s, and in mid-flight drag that
+# grows, or rotors that lose thrust, by such a share.
 OUTSIDE = {"flap": ([], [0.02, 0.06]), "torn": ([], [1.0, 2.0]), "chipped": ([], [0.05, 0.15])}
 # A rate loop of P alone behind motors with a lag, and a drag of each axis by itself (a share of 1), are no compact
 # model's: neither right nor wrong.
@@ -47,8 +47,8 @@ OWN = {"rate_delay", "yaw_delay", "rate_second_order", "yaw_second_order", "rate
        "mixer_room", "mixer_thrust_loss", "axis_drag"}
 # What is hidden, and of how many flights.
 GROUPS = {"none": 0.3, "one": 0.4, "two": 0.15, "outside": 0.15}
-FIELDS = ["seed", "log", "group", "hidden", "named", "suspected", "verdict", "first_right", "found", "of", "spurious",
-          "unexplained", "axis_share"]
+FIELDS = ["build", "seed", "log", "group", "hidden", "named", "suspected", "verdict", "first_right", "found", "of",
+          "spurious", "unexplained", "axis_share"]
 
 
 def drawn(seed, log, only):
@@ -154,7 +154,6 @@ def flown(on, seconds, seed):
 def written(folder, name, rows):
     path = folder / f"{name}.csv"
     np.savetxt(path, rows, fmt="%.7g", delimiter=",", header=",".join(COLUMNS), comments="")
-    (folder / "rotorpy.toml").write_text(MAPPING.format(mass=MASS, rates=np.degrees(MAX_RATE).round(3).tolist()))
     return path
 
 
@@ -165,8 +164,8 @@ def told(racer, folder, args, log):
     answer = path.with_suffix(".json")
     answer.unlink(missing_ok=True)
     threads = os.environ | {"RAYON_NUM_THREADS": str(max(1, os.cpu_count() // args.jobs))}
-    subprocess.run([racer, "diagnose", path, "--mapping", folder / "rotorpy.toml", "--vehicle", folder / "base.toml", "--json",
-                    answer], check=True, stdout=subprocess.DEVNULL, env=threads)
+    subprocess.run([racer, "diagnose", path, "--mapping", folder / "rotorpy.toml", "--vehicle", folder / "base.toml",
+                    "--json", answer], check=True, stdout=subprocess.DEVNULL, env=threads)
     said = json.loads(answer.read_text())
     path.unlink()
     named = [f for f in said["findings"] if f["status"] != "suspected" and f["effect"] not in OWN]
@@ -176,9 +175,11 @@ def told(racer, folder, args, log):
     # Another mass is thrust that moved against the base vehicle, named or not.
     moved = "load" in on and any(d["parameter"].startswith("thrust over mass") for d in said["drift"])
     first = is_right(named[0]) if named else moved
-    found = sum(any(set(f["members"]) & set(names) for f in named) or moved and "mass_or_density" in names for names in right)
-    shares = [f["parameters"]["share"] for f in said["findings"] if f["effect"] == "axis_drag" and f["status"] != "suspected"]
-    return [args.seed, log, group, " ".join(f"{name}={size:.4f}" for name, size in on.items()),
+    is_named = lambda names: any(set(f["members"]) & set(names) for f in named)
+    found = sum(is_named(names) or moved and "mass_or_density" in names for names in right)
+    shares = [f["parameters"]["share"] for f in said["findings"]
+              if f["effect"] == "axis_drag" and f["status"] != "suspected"]
+    return [args.build, args.seed, log, group, " ".join(f"{name}={size:.4f}" for name, size in on.items()),
             " ".join(f["effect"] for f in named), " ".join(suspected), said["verdict"], int(first), found, len(on),
             " ".join(f["effect"] for f in named if not is_right(f)), int(said["verdict"] == "unexplained"),
             "".join("{value:.3f} ({low:.3f} to {high:.3f})".format(**share) for share in shares)]
@@ -191,20 +192,23 @@ def main():
     parser.add_argument("--n", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--build", default="", help="what RACER was built from: a run goes on with flights of one build")
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--only", choices=CAUSES | OUTSIDE)
     parser.add_argument("--folder", type=Path, help="where the base vehicle and the answers stay")
     args = parser.parse_args()
     folder, racer = args.folder or Path(tempfile.mkdtemp()), args.racer.absolute()
     folder.mkdir(parents=True, exist_ok=True)
+    (folder / "rotorpy.toml").write_text(MAPPING.format(mass=MASS, rates=np.degrees(MAX_RATE).round(3).tolist()))
     if not (folder / "base.toml").exists():
         first = written(folder, "first", flown({}, args.seconds, 100))
-        subprocess.run([racer, "identify", first, "--mapping", folder / "rotorpy.toml", "--out", folder / "base.toml"], check=True)
+        mapping = ["--mapping", folder / "rotorpy.toml"]
+        subprocess.run([racer, "identify", first, *mapping, "--out", folder / "base.toml"], check=True)
     known = set()
     if args.out.exists():
         with open(args.out, newline="") as file:
-            known = {(r["seed"], r["log"]) for r in csv.DictReader(file)}
-    left = [log for log in range(args.n) if (str(args.seed), str(log)) not in known]
+            known = {(r["build"], r["seed"], r["log"]) for r in csv.DictReader(file)}
+    left = [log for log in range(args.n) if (args.build, str(args.seed), str(log)) not in known]
     with open(args.out, "a", newline="") as file, multiprocessing.Pool(args.jobs) as pool:
         lines = csv.writer(file, lineterminator="\n")
         if not known:
