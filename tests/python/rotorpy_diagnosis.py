@@ -25,6 +25,8 @@ from rotorpy_laps import COLUMNS, MAPPING, RATE_GAIN, vehicle
 from scipy.spatial.transform import Rotation
 
 STEP_S, PERIOD_S, SEGMENT_S = 0.002, 0.02, 1.5
+# In a minute a pilot may turn but once about an axis.
+FIRST_S = 180.0
 MASS, FULL_N, G = 0.8, 40.0, 9.81
 MAX_RATE = np.array([12.0, 12.0, 5.0])
 HOVER = 3000.0 * np.sqrt(MASS * G / FULL_N)
@@ -84,10 +86,10 @@ def parameters(on):
 
 
 class Pilot:
-    """Holds a place, and leaves it for something else every so often."""
+    """Holds a place, and leaves it for something else and another heading every so often."""
 
     def __init__(self, rng):
-        self.rng, self.until, self.kind = rng, 3.0, "hold"
+        self.rng, self.until, self.kind, self.heading = rng, 3.0, "hold", 0.0
 
     def command(self, t, s):
         """Body rates, rad/s, and thrust as a share of full."""
@@ -96,6 +98,7 @@ class Pilot:
             self.began, self.until = t, t + SEGMENT_S * (1.5 if self.kind == "hold" else 1.0)
             self.axis, self.sign = self.rng.integers(3), self.rng.choice([-1, 1])
             self.share = self.rng.uniform(0.4, 1.0)
+            self.heading = self.rng.uniform(-np.pi, np.pi)
             turn = self.rng.uniform(0, 2 * np.pi)
             self.away = np.array([np.cos(turn), np.sin(turn), 0.0])
         turned = Rotation.from_quat(s["q"])
@@ -109,7 +112,9 @@ class Pilot:
         up = lift / np.linalg.norm(lift)
         thrust = MASS * max(lift @ turned.apply([0, 0, 1]), 1.0) / FULL_N
         tilt = np.cross([0, 0, 1], turned.inv().apply(up))
-        rates = np.array([9.0 * tilt[0], 9.0 * tilt[1], 0.0])
+        ahead = turned.apply([1, 0, 0])
+        off = np.angle(np.exp(1j * (self.heading - np.arctan2(ahead[1], ahead[0]))))
+        rates = np.array([9.0 * tilt[0], 9.0 * tilt[1], np.clip(2.0 * off, -2.0, 2.0)])
         since = t - getattr(self, "began", 0.0)
         if self.kind == "doublet" and since < 0.24:
             rates[self.axis] = self.sign * self.share * 0.8 * MAX_RATE[self.axis] * (1 if since < 0.12 else -1)
@@ -167,7 +172,8 @@ def told(racer, folder, args, log):
     subprocess.run([racer, "diagnose", path, "--mapping", folder / "rotorpy.toml", "--vehicle", folder / "base.toml",
                     "--json", answer], check=True, stdout=subprocess.DEVNULL, env=threads)
     said = json.loads(answer.read_text())
-    path.unlink()
+    if not args.keep:
+        path.unlink()
     named = [f for f in said["findings"] if f["status"] != "suspected" and f["effect"] not in OWN]
     suspected = [f["effect"] for f in said["findings"] if f["status"] == "suspected"]
     right = [(CAUSES | OUTSIDE)[name][0] for name in on]
@@ -196,12 +202,13 @@ def main():
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--only", choices=CAUSES | OUTSIDE)
     parser.add_argument("--folder", type=Path, help="where the base vehicle and the answers stay")
+    parser.add_argument("--keep", action="store_true", help="the flights too")
     args = parser.parse_args()
     folder, racer = args.folder or Path(tempfile.mkdtemp()), args.racer.absolute()
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "rotorpy.toml").write_text(MAPPING.format(mass=MASS, rates=np.degrees(MAX_RATE).round(3).tolist()))
     if not (folder / "base.toml").exists():
-        first = written(folder, "first", flown({}, args.seconds, 100))
+        first = written(folder, "first", flown({}, FIRST_S, 100))
         mapping = ["--mapping", folder / "rotorpy.toml"]
         subprocess.run([racer, "identify", first, *mapping, "--out", folder / "base.toml"], check=True)
     known = set()

@@ -14,7 +14,7 @@ use crate::insight::diagnose::selection::caused::ForceCause;
 use crate::insight::diagnose::selection::fitted::FittedSelection;
 use crate::insight::estimate::gram::Grams;
 use crate::model::effects::{self, Card, CompactNumber};
-use moved::{Account, Moved};
+use moved::{Account, Moved, is_sure};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What such an effect explains.
@@ -58,6 +58,10 @@ fn finding(fitted: &FittedSelection, best: &Account, near: Vec<&'static str>) ->
     let card = best.way.card;
     let (size, sd) = instead(fitted, best.way, best.size)?;
     let sd = sd.max(best.sd);
+    // What it was by the moves may be something else in the flight.
+    if !is_sure(best.way, size, sd) {
+        return None;
+    }
     let p = &card.parameters[0];
     Some(Finding {
         status: if near.is_empty() { Status::Named } else { Status::NamedSet },

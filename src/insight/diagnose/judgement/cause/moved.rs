@@ -51,6 +51,14 @@ struct Least {
     left: f64,
 }
 
+/// Whether an effect of that size and standard deviation is there, and anybody would notice.
+pub fn is_sure(way: ForceCause, size: f64, sd: f64) -> bool {
+    let p = &way.card.parameters[0];
+    let worth = if way.about_full { COMPENSATED.get() } else { MATERIAL_SIZE.get() * p.typical[0] };
+    // Of the other sign it would be no effect: no thrust comes back with time.
+    size >= p.low && size.abs() > worth && size.abs() > MOVED_DEVIATIONS.get() * sd
+}
+
 impl Moved {
     /// Of a fit; `sum` holds the inner products of what its numbers change, whitened.
     pub fn new(fitted: &FittedSelection, sum: &DMatrix<f64>) -> Option<Self> {
@@ -84,14 +92,9 @@ impl Moved {
         let alone = self.least(Some(&direction), [0.0; 2])?;
         let limits = if self.share(&alone) >= CAUSE_ACCOUNTS.get() { [0.0; 2] } else { ERRORS.map(Criterion::get) };
         let least = if limits == [0.0; 2] { alone } else { self.beside(way, &direction, limits)? };
-        let p = &way.card.parameters[0];
-        let worth = if way.about_full { COMPENSATED.get() } else { MATERIAL_SIZE.get() * p.typical[0] };
-        // Of the other sign it would be no effect: no thrust comes back with time.
-        let possible = least.size >= p.low;
-        let sure = least.size.abs() > worth && least.size.abs() > MOVED_DEVIATIONS.get() * least.sd;
         let way = ForceCause { off: least.off, ..way };
         let account = Account { way, limits, share: self.share(&least), size: least.size, sd: least.sd };
-        (possible && sure).then_some(account)
+        is_sure(way, least.size, least.sd).then_some(account)
     }
 
     /// The effect of a `direction` beside errors of the base up to `limits`, which is worth more than these, and needed
