@@ -88,6 +88,18 @@ fn the_rotors_are_found_behind_a_mixer() {
     }
 }
 
+/// PX4, ArduPilot and Betaflight can all do that, rotorpy does; a line from commands to outputs gave 14 % too much thrust
+/// at full throttle there.
+#[test]
+fn outputs_may_be_a_curve_of_the_command() {
+    let truth = Controlled { linearises: true, ..Controlled::racer() };
+    let found = found(&fly(&truth, 5, SECONDS, true));
+    let wanted = |share: f64, v: f64| truth.thrust(truth.output(share, v), v);
+    near(&truth, &found.vehicle.thrust_n, found.thrust.flown_throttle.unwrap(), LARGEST_OVER_COMMAND, &wanted);
+    let power = found.vehicle.identified.unwrap().rotors.unwrap().motor_power;
+    assert!((power - 0.5).abs() < 0.05, "{power}");
+}
+
 #[test]
 fn the_command_alone_tells_less() {
     let truth = Controlled::racer();

@@ -29,6 +29,7 @@ STEP_S, PERIOD_S, SEGMENT_S = 0.002, 0.02, 1.5
 FIRST_S = 180.0
 MASS, FULL_N, G = 0.8, 40.0, 9.81
 MAX_RATE = np.array([12.0, 12.0, 5.0])
+MOTORS = ["u1", "u2", "u3", "u4"]
 HOVER = 3000.0 * np.sqrt(MASS * G / FULL_N)
 
 # What is switched on, the names that are right for it, and between which sizes.
@@ -43,10 +44,10 @@ CAUSES = {
 # What the catalogue does not have: rotors that flap, by so much of a rate for each m/s, and in mid-flight drag that
 # grows, or rotors that lose thrust, by such a share.
 OUTSIDE = {"flap": ([], [0.02, 0.06]), "torn": ([], [1.0, 2.0]), "chipped": ([], [0.05, 0.15])}
-# A rate loop of P alone behind motors with a lag, and a drag of each axis by itself (a share of 1), are no compact
-# model's: neither right nor wrong.
+# A rate loop of P alone behind motors with a lag, which makes up for no gyroscopic moment (k is -0.71), and a drag of
+# each axis by itself (a share of 1), are no compact model's: neither right nor wrong, nor is a set with one of them.
 OWN = {"rate_delay", "yaw_delay", "rate_second_order", "yaw_second_order", "rate_slew_limit", "yaw_slew_limit",
-       "mixer_room", "mixer_thrust_loss", "axis_drag"}
+       "mixer_room", "mixer_thrust_loss", "gyroscopic_coupling", "axis_drag"}
 # What is hidden, and of how many flights.
 GROUPS = {"none": 0.3, "one": 0.4, "two": 0.15, "outside": 0.15}
 FIELDS = ["build", "seed", "log", "group", "hidden", "named", "suspected", "verdict", "first_right", "found", "of",
@@ -124,7 +125,7 @@ class Pilot:
 
 
 def flown(on, seconds, seed):
-    """A flight as rows of COLUMNS."""
+    """A flight as rows of COLUMNS and what the motors were sent."""
     rng = np.random.default_rng(seed)
     craft = Multirotor(parameters(on), control_abstraction="cmd_ctbr", integrator_kwargs={"method": "RK23"})
     s = {"x": np.array([0.0, 0.0, 15.0]), "v": np.zeros(3), "q": np.array([0.0, 0, 0, 1]), "w": np.zeros(3),
@@ -150,22 +151,23 @@ def flown(on, seconds, seed):
         turned = Rotation.from_quat(s["q"])
         force = turned.inv().apply(craft.statedot(s, control, STEP_S)["vdot"] + [0, 0, G])
         volts = 24.5 - 0.01 * t + rng.normal(0, 0.02)
+        sent = np.clip(craft.get_cmd_motor_speeds(s, control) / craft.rotor_speed_max, 0, 1)
         rows.append([t, *rates, share, *(s["w"] + rng.normal(0, 0.02, 3)), *(force + rng.normal(0, 0.2, 3)), *s["x"],
-                     s["q"][3], *s["q"][:3], *turned.inv().apply(s["v"]), volts, *s["rotor_speeds"]])
+                     s["q"][3], *s["q"][:3], *turned.inv().apply(s["v"]), volts, *s["rotor_speeds"], *sent])
         s = craft.step(s, control, STEP_S)
     return rows
 
 
-def written(folder, name, rows):
-    path = folder / f"{name}.csv"
-    np.savetxt(path, rows, fmt="%.7g", delimiter=",", header=",".join(COLUMNS), comments="")
-    return path
+def written(path, rows):
+    np.savetxt(path, rows, fmt="%.7g", delimiter=",", header=",".join(COLUMNS + MOTORS), comments="")
 
 
 def told(racer, folder, args, log):
     """Flies a flight and has it diagnosed: the line of OUT.csv."""
     group, on = drawn(args.seed, log, args.only)
-    path = written(folder, f"{log}", flown(on, args.seconds, [args.seed, log, 1]))
+    path = folder / f"{args.seed}-{log}.csv"
+    if not path.exists():
+        written(path, flown(on, args.seconds, [args.seed, log, 1]))
     answer = path.with_suffix(".json")
     answer.unlink(missing_ok=True)
     threads = os.environ | {"RAYON_NUM_THREADS": str(max(1, os.cpu_count() // args.jobs))}
@@ -174,10 +176,11 @@ def told(racer, folder, args, log):
     said = json.loads(answer.read_text())
     if not args.keep:
         path.unlink()
-    named = [f for f in said["findings"] if f["status"] != "suspected" and f["effect"] not in OWN]
-    suspected = [f["effect"] for f in said["findings"] if f["status"] == "suspected"]
     right = [(CAUSES | OUTSIDE)[name][0] for name in on]
     is_right = lambda f: any(set(f["members"]) & set(names) for names in right)
+    own = lambda f: not is_right(f) and set(f["members"]) & OWN
+    named = [f for f in said["findings"] if f["status"] != "suspected" and not own(f)]
+    suspected = [f["effect"] for f in said["findings"] if f["status"] == "suspected"]
     # Another mass is thrust that moved against the base vehicle, named or not.
     moved = "load" in on and any(d["parameter"].startswith("thrust over mass") for d in said["drift"])
     first = is_right(named[0]) if named else moved
@@ -202,13 +205,15 @@ def main():
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--only", choices=CAUSES | OUTSIDE)
     parser.add_argument("--folder", type=Path, help="where the base vehicle and the answers stay")
-    parser.add_argument("--keep", action="store_true", help="the flights too")
+    parser.add_argument("--keep", action="store_true", help="the flights too, to be diagnosed again")
     args = parser.parse_args()
     folder, racer = args.folder or Path(tempfile.mkdtemp()), args.racer.absolute()
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "rotorpy.toml").write_text(MAPPING.format(mass=MASS, rates=np.degrees(MAX_RATE).round(3).tolist()))
+    (folder / "rotorpy.toml").write_text(MAPPING.format(mass=MASS, rates=np.degrees(MAX_RATE).round(3).tolist())
+                                         + f"\n[motors]\ncommand = {{ fields = {json.dumps(MOTORS)} }}\n")
     if not (folder / "base.toml").exists():
-        first = written(folder, "first", flown({}, FIRST_S, 100))
+        first = folder / "first.csv"
+        written(first, flown({}, FIRST_S, 100))
         mapping = ["--mapping", folder / "rotorpy.toml"]
         subprocess.run([racer, "identify", first, *mapping, "--out", folder / "base.toml"], check=True)
     known = set()

@@ -40,6 +40,8 @@ pub struct Controlled {
     pub boost: f64,
     /// Whether outputs grow as the voltage falls.
     pub compensates: bool,
+    /// Whether outputs are the root of what is asked for, so that thrust is in proportion to it.
+    pub linearises: bool,
 }
 
 impl Controlled {
@@ -57,7 +59,14 @@ impl Controlled {
             idle: 0.055,
             boost: 0.5,
             compensates: true,
+            linearises: false,
         }
+    }
+
+    /// Output of a motor of which 0 to 1 is asked.
+    fn sent(&self, asked: f64) -> f64 {
+        let asked = asked.clamp(0.0, 1.0);
+        self.idle + (1.0 - self.idle) * if self.linearises { asked.sqrt() } else { asked }
     }
 
     /// Speed that a rotor goes to, rad/s.
@@ -73,7 +82,7 @@ impl Controlled {
     /// Output of each motor in the end for a collective command of 0 to 1, without rates.
     pub fn output(&self, command: f64, volts: f64) -> f64 {
         let lifted = if self.compensates { command * self.full_v / volts } else { command };
-        self.idle + (1.0 - self.idle) * lifted.clamp(0.0, 1.0)
+        self.sent(lifted)
     }
 
     /// The collective command that carries it, 0 to 1.
@@ -117,7 +126,7 @@ impl Controller {
         let lifted = if v.compensates { boosted * v.full_v / volts } else { boosted };
         // Rates come first: the collective moves until every motor has room for them.
         let collective = lifted.min(1.0 - most / range).max(-least / range);
-        mix.map(|x| v.idle + (1.0 - v.idle) * (collective + x).clamp(0.0, 1.0))
+        mix.map(|x| v.sent(collective + x))
     }
 }
 

@@ -6,6 +6,7 @@ use super::solve::{Solution, Unknown, solve};
 use crate::base::stats::{Score, mean};
 use crate::flight::series::held;
 use crate::insight::criteria::identified::{CALM, CALM_LEAST};
+use crate::insight::criteria::shown::REMARKED_ERROR;
 use crate::insight::estimate::range::TIME_CONSTANT_S;
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::insight::prepare::flight::PreparedFlight;
@@ -13,11 +14,14 @@ use crate::insight::prepare::lag::Following;
 use crate::insight::prepare::rotors::columns;
 use crate::model::vehicle::identified::RotorChain;
 
-/// Order of the unknowns: lag (s), output at no command, gain, change of the gain (1/V).
+/// Order of the unknowns: lag (s), output at no command, gain, its change (1/V) where there is a voltage, power of the
+/// command where that is no line.
 const LAG: usize = 0;
 const ZERO: usize = 1;
 const GAIN: usize = 2;
-const BY_VOLTAGE: usize = 3;
+
+/// What the power can be: outputs are rotor speeds for commands of thrust at a half, the other way round at 2.
+const POWERS: [f64; 2] = [0.3, 3.0];
 
 /// What was found.
 pub struct Mixer {
@@ -47,33 +51,40 @@ pub fn fit(data: &Data, part: DataPart, by_voltage: bool) -> Option<Mixer> {
     if first.is_empty() || first.iter().any(|u| !u.is_finite()) || middle.is_nan() {
         return None;
     }
-    let one = |x: &[f64], u: f64, v: f64| x[ZERO] + (x[GAIN] + x[BY_VOLTAGE] * (v - middle)) * u;
-    let predicted =
-        |x: &[f64]| -> Vec<f64> { command(x[LAG]).iter().zip(&volts).map(|(&u, &v)| one(x, u, v)).collect() };
-    let residuals = |x: &[f64]| vec![predicted(x).iter().zip(&measured).map(|(p, m)| p - m).collect::<Vec<f64>>()];
-    let free = |start: f64, low: f64, high: f64| Unknown { start, low, high, step: 1e-3, linear: true };
-    let most = if by_voltage { 1.0 } else { 0.0 };
-    let unknowns = [
-        Unknown { start: 0.005, low: TIME_CONSTANT_S[0], high: TIME_CONSTANT_S[1], step: 1e-4, linear: false },
-        free(0.0, -1.0, 1.0),
-        free(1.0, 0.02, 5.0),
-        free(0.0, -most, most),
-    ];
-    let solution = solve(&unknowns[..if by_voltage { 4 } else { 3 }], &data.blocks(&chosen), &|x| {
-        residuals(&[x[LAG], x[ZERO], x[GAIN], x.get(BY_VOLTAGE).copied().unwrap_or(0.0)])
-    })?;
-    let x = &solution.values;
-    let x = [x[LAG], x[ZERO], x[GAIN], x.get(BY_VOLTAGE).copied().unwrap_or(0.0)];
-    let score = Score::of(&measured, &predicted(&x));
-    let chain = RotorChain {
+    let chain = |x: &[f64], curved: bool| RotorChain {
         motor_offset: x[ZERO],
         motor_gain: x[GAIN],
-        motor_gain_per_v: x[BY_VOLTAGE],
+        motor_power: if curved { x[x.len() - 1] } else { 1.0 },
+        motor_gain_per_v: if by_voltage { x[GAIN + 1] } else { 0.0 },
         motor_at_v: middle,
-        command_lag_s: Some(if solution.at_bound[LAG] { 0.0 } else { x[LAG] }),
         ..RotorChain::DIRECT
     };
-    (score.r2 > 0.0 && !solution.at_bound[GAIN]).then_some(Mixer { chain, solution, score })
+    let predicted = |x: &[f64], curved: bool| -> Vec<f64> {
+        let chain = chain(x, curved);
+        command(x[LAG]).iter().zip(&volts).map(|(&u, &v)| chain.motor(u, v)).collect()
+    };
+    let free = |start: f64, [low, high]: [f64; 2]| Unknown { start, low, high, step: 1e-3, linear: true };
+    let fitted = |curved: bool| -> Option<Mixer> {
+        let lag = Unknown { step: 1e-4, linear: false, ..free(0.005, TIME_CONSTANT_S) };
+        let mut unknowns = vec![lag, free(0.0, [-1.0, 1.0]), free(1.0, [0.02, 5.0])];
+        unknowns.extend(by_voltage.then(|| free(0.0, [-1.0, 1.0])));
+        unknowns.extend(curved.then(|| Unknown { linear: false, ..free(1.0, POWERS) }));
+        let off = |x: &[f64]| vec![predicted(x, curved).iter().zip(&measured).map(|(p, m)| p - m).collect()];
+        let solution = solve(&unknowns, &data.blocks(&chosen), &off)?;
+        let x = &solution.values;
+        let lag = if solution.at_bound[LAG] { 0.0 } else { x[LAG] };
+        let score = Score::of(&measured, &predicted(x, curved));
+        Some(Mixer { chain: RotorChain { command_lag_s: Some(lag), ..chain(x, curved) }, solution, score })
+    };
+    let line = fitted(false)?;
+    // Nothing may tell a curve from a line, and beyond what was flown it is carried on.
+    let better = |curved: &Mixer| {
+        let power = curved.solution.values.len() - 1;
+        let sure = (curved.chain.motor_power - 1.0).abs() > 2.0 * curved.solution.half_width(power);
+        sure && curved.score.rmse < REMARKED_ERROR.get() * line.score.rmse
+    };
+    let best = fitted(true).filter(better).unwrap_or(line);
+    (best.score.r2 > 0.0 && !best.solution.at_bound[GAIN]).then_some(best)
 }
 
 /// 1 where the rates are near their setpoints, else 0.

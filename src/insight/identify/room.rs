@@ -26,8 +26,7 @@ struct Room {
     throttle: Vec<f64>,
     /// Summed over the axes, rad/s.
     behind: Vec<f64>,
-    /// Output at no command, and gain.
-    line: [f64; 2],
+    chain: RotorChain,
 }
 
 /// Fits k to `part` of the flights, of which `chain`, `rates` and `rate_loop` were found. None where the motors do not
@@ -78,13 +77,12 @@ impl Room {
         let chosen = data.choose(part, known);
         let pick = |x: &[Vec<f64>]| Data::pick(x, &chosen);
         let (output, throttle, behind) = (pick(&outputs), pick(&throttle), pick(&behind));
-        let line = [chain.motor_offset, chain.motor_gain];
-        Some(Self { block: data.blocks(&chosen), output, throttle, behind, line })
+        Some(Self { block: data.blocks(&chosen), output, throttle, behind, chain: *chain })
     }
 
     fn residual(&self, i: usize, k: f64) -> f64 {
         let command = with_room(2.0 * self.throttle[i] - 1.0, k, self.behind[i]);
-        self.output[i] - self.line[0] - self.line[1] * throttle(command)
+        self.output[i] - self.chain.motor(throttle(command), f64::NAN)
     }
 
     fn squares(&self, k: f64) -> f64 {

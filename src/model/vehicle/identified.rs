@@ -95,6 +95,10 @@ pub struct RotorChain {
     pub motor_offset: f64,
     /// What a full command adds at `motor_at_v`.
     pub motor_gain: f64,
+    /// Power of the command in the output: a half where the flight controller takes outputs for rotor speeds and
+    /// commands for thrust, 1 where it takes both alike.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub motor_power: f64,
     /// By how much that changes with the voltage, 1/V.
     pub motor_gain_per_v: f64,
     /// V.
@@ -118,6 +122,7 @@ impl RotorChain {
     pub const DIRECT: Self = Self {
         motor_offset: 0.0,
         motor_gain: 1.0,
+        motor_power: 1.0,
         motor_gain_per_v: 0.0,
         motor_at_v: 0.0,
         command_per_speed: None,
@@ -134,13 +139,26 @@ impl RotorChain {
 
     /// Mean motor output, 0..1, of a collective command of 0..1 without rate demand.
     pub fn motor(&self, command: f64, volts: f64) -> f64 {
-        self.motor_offset + self.gain(volts) * command
+        self.motor_offset + self.gain(volts) * power(command, self.motor_power)
     }
 
     /// The collective command, 0..1, that leads to this motor output.
     pub fn command(&self, motor: f64, volts: f64) -> f64 {
-        (motor - self.motor_offset) / self.gain(volts)
+        power((motor - self.motor_offset) / self.gain(volts), 1.0 / self.motor_power)
     }
+}
+
+/// With the sign of `x`.
+fn power(x: f64, exponent: f64) -> f64 {
+    x.abs().powf(exponent).copysign(x)
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn is_one(x: &f64) -> bool {
+    *x == 1.0
 }
 
 /// Constant errors of the sensors, as the flights showed them: what a prediction of their readings adds.
