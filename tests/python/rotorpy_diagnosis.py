@@ -44,8 +44,9 @@ CAUSES = {
 # What the catalogue does not have: rotors that flap, by so much of a rate for each m/s, and in mid-flight drag that
 # grows, or rotors that lose thrust, by such a share.
 OUTSIDE = {"flap": ([], [0.02, 0.06]), "torn": ([], [1.0, 2.0]), "chipped": ([], [0.05, 0.15])}
-# A rate loop of P alone behind motors with a lag, which makes up for no gyroscopic moment (k is -0.71), and a drag of
-# each axis by itself (a share of 1), are no compact model's: neither right nor wrong, nor is a set with one of them.
+# A rate loop of P alone behind motors with a lag, which makes up for no gyroscopic moment (k is -0.71), a drag of each
+# axis by itself (a share of 1), and thrust by the square of a speed that lags, which rises later than it falls, are no
+# compact model's: neither right nor wrong, nor is a set with one of them.
 OWN = {"rate_delay", "yaw_delay", "rate_second_order", "yaw_second_order", "rate_slew_limit", "yaw_slew_limit",
        "mixer_room", "mixer_thrust_loss", "gyroscopic_coupling", "axis_drag"}
 # What is hidden, and of how many flights.
@@ -162,6 +163,11 @@ def written(path, rows):
     np.savetxt(path, rows, fmt="%.7g", delimiter=",", header=",".join(COLUMNS + MOTORS), comments="")
 
 
+def rises_later(finding):
+    taus = finding["parameters"]
+    return finding["effect"] == "thrust_asymmetric_lag" and taus["tau_up"]["value"] > taus["tau_down"]["value"]
+
+
 def told(racer, folder, args, log):
     """Flies a flight and has it diagnosed: the line of OUT.csv."""
     group, on = drawn(args.seed, log, args.only)
@@ -178,7 +184,7 @@ def told(racer, folder, args, log):
         path.unlink()
     right = [(CAUSES | OUTSIDE)[name][0] for name in on]
     is_right = lambda f: any(set(f["members"]) & set(names) for names in right)
-    own = lambda f: not is_right(f) and set(f["members"]) & OWN
+    own = lambda f: not is_right(f) and (set(f["members"]) & OWN or rises_later(f))
     named = [f for f in said["findings"] if f["status"] != "suspected" and not own(f)]
     suspected = [f["effect"] for f in said["findings"] if f["status"] == "suspected"]
     # Another mass is thrust that moved against the base vehicle, named or not.

@@ -23,6 +23,8 @@ criteria! {
     LOST_COMMANDS = 12.0, Assumed(UNRECORDED);
     /// So many times as many whole losses as half ones, for a loss is all or nothing.
     LOST_OVER_HALF = 2.0, Assumed(UNRECORDED);
+    /// Most that a link loses which is flown on, as a share.
+    LOST_SHARE_MOST = 0.3, Assumed("half as much again as the largest typical size; rotors at their limits had 0.39");
     /// So many times as many whole losses as early answers, for a link whose delay varies has both.
     LOST_OVER_EARLY = 2.0, Assumed(UNRECORDED);
 

@@ -1,4 +1,5 @@
-//! Rotors that slow down later than they speed up: tau of falling thrust is that of rising thrust plus a difference.
+//! Rotors that slow down with another lag than they speed up with: tau of falling thrust is that of rising thrust plus a
+//! difference. Motors that only brake by drag fall later; thrust by the square of a speed that lags rises later.
 
 use super::{Actuator, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;
@@ -8,8 +9,8 @@ pub struct ThrustAsymmetricLag;
 impl Effect for ThrustAsymmetricLag {
     const CARD: Card = Card {
         id: "thrust_asymmetric_lag",
-        name: "spin-down slower than spin-up",
-        sentence: "thrust dies away more slowly after a throttle cut than it builds up after a punch",
+        name: "spin-down and spin-up of different lag",
+        sentence: "thrust dies away after a throttle cut with another lag than it builds up with after a punch",
         kind: EffectKind::Timing,
         parameters: &[EffectParameter {
             name: "difference",
@@ -20,7 +21,7 @@ impl Effect for ThrustAsymmetricLag {
         }],
         writes: &[Quantity::ThrustCommand],
         channels: &[ResidualChannel::Force],
-        signature: "vertical specific force lags after throttle cuts, not after punches",
+        signature: "vertical specific force lags otherwise after throttle cuts than after punches",
         rivals: &["thrust_delay", "throttle_offset"],
         manoeuvre: ("throttle steps up and down of the same size, and cuts", &["throttle-steps", "punch", "chop"]),
         shown: Some(|k, [.., tau]| vec![("tau_up", tau, "s"), ("tau_down", tau + k[0], "s")]),

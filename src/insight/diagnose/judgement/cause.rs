@@ -4,11 +4,14 @@
 mod moved;
 
 use super::finding::{Finding, Status, Value};
+use super::pays::pays;
 use crate::base::stats::mean;
 use crate::insight::criteria::drifted::{CAUSE_TIE, CAUSE_TIE_SHARE};
+use crate::insight::criteria::unseen::PAYS_DEVIATIONS;
 use crate::insight::diagnose::fitting::fit::covariance;
+use crate::insight::diagnose::fitting::unseen::even_parts;
 use crate::insight::diagnose::prediction::channels::FORCE;
-use crate::insight::diagnose::prediction::numbers::span;
+use crate::insight::diagnose::prediction::numbers::{THRUST, span};
 use crate::insight::diagnose::prediction::problem::ChannelValues;
 use crate::insight::diagnose::selection::caused::ForceCause;
 use crate::insight::diagnose::selection::fitted::FittedSelection;
@@ -48,9 +51,19 @@ pub fn find(fitted: &FittedSelection) -> Option<Finding> {
     if moved.in_proportion(best.limits) > best.share {
         return None;
     }
+    if !is_needed(fitted) {
+        return None;
+    }
     let close = |other: &&Account| 1.0 - other.share < CAUSE_TIE.get() * (1.0 - best.share) + CAUSE_TIE_SHARE.get();
     let near: Vec<&'static str> = found.iter().skip(1).filter(close).map(|other| other.way.card.id).collect();
     finding(fitted, best, near)
+}
+
+/// Whether the thrust's move pays on unseen flight: else the base's thrust does as well, and nothing has moved it.
+fn is_needed(fitted: &FittedSelection) -> bool {
+    let free = &fitted.selection.point.free;
+    let thrust = (0..free.len()).filter(|&i| THRUST.contains(&free[i])).collect();
+    pays(fitted, &even_parts(fitted.problem), &[thrust])[0].surely() > PAYS_DEVIATIONS.get()
 }
 
 /// The finding of `best`, which `near` ones come close to.

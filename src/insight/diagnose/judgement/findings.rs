@@ -70,8 +70,14 @@ impl Judgement {
             finding.suspect("the wind is not the same everywhere".into());
         }
         let windy = self.findings.iter().any(|f| f.has(Role::UniformWind) && f.status != Status::Suspected);
-        for finding in self.findings.iter_mut().filter(|f| windy && gusts::last_like_wind(f)) {
+        for finding in self.findings.iter_mut().filter(|f| windy && gusts::rivals::last_like_wind(f)) {
             finding.suspect("beside a wind it lasts for seconds: the wind may turn, or grow with height".into());
+        }
+        let gusts = self.findings.iter().find(|f| f.has(Role::RandomForce) && f.status != Status::Suspected).cloned();
+        for finding in
+            self.findings.iter_mut().filter(|f| gusts.as_ref().is_some_and(|gusts| gusts::rivals::may_be(gusts, f)))
+        {
+            finding.suspect("moving air makes as much of a drag by the square of the speed".into());
         }
         for finding in self.findings.iter_mut().filter(|f| f.status == Status::Named) {
             open(finding, &all, &self.unexplained);

@@ -2,12 +2,12 @@
 //! horizontal axes. They have no mean, and show in the variance.
 
 mod of_speed;
+pub mod rivals;
 
 use super::finding::{Finding, Value};
 use crate::base::stats::{NORMAL_95, mean, median};
 use crate::insight::criteria::chance::{
-    ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_MOST_S, GUST_MEMORY_S, GUST_ONE_WAY, GUST_OWN,
-    GUST_STRUCTURE,
+    ESTIMATOR_RATIO, GUST_BALANCED, GUST_LASTING, GUST_MEMORY_S, GUST_ONE_WAY, GUST_OWN, GUST_STRUCTURE,
 };
 use crate::insight::criteria::flown::GUST_ROWS;
 use crate::insight::criteria::material::MATERIAL_GUST;
@@ -66,11 +66,6 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
         found.suspect("most of it goes with the vehicle's own speed: a drag of another form leaves the same".into());
     }
     Some(found)
-}
-
-/// Whether these gusts last for so long that a wind which turns, or grows with height, leaves the same.
-pub fn last_like_wind(gusts: &Finding) -> bool {
-    gusts.has(Role::RandomForce) && gusts.parameters.get("tau").is_some_and(|tau| tau.value > GUST_MEMORY_MOST_S.get())
 }
 
 /// What errors of the logged velocity look like in the forces, m/s2: how much of it the pushes show, which the air has

@@ -4,8 +4,8 @@
 use super::Selection;
 use crate::base::stats::{NORMAL_95, robust_sd};
 use crate::insight::criteria::chance::{
-    EARLY_DEVIATIONS, EARLY_SHARE, LOST_COMMANDS, LOST_HALF, LOST_MOST, LOST_OVER_EARLY, LOST_OVER_HALF, LOST_WHOLE,
-    MOVEMENT_BEFORE, MOVEMENT_DEVIATIONS,
+    EARLY_DEVIATIONS, EARLY_SHARE, LOST_COMMANDS, LOST_HALF, LOST_MOST, LOST_OVER_EARLY, LOST_OVER_HALF,
+    LOST_SHARE_MOST, LOST_WHOLE, MOVEMENT_BEFORE, MOVEMENT_DEVIATIONS,
 };
 use crate::insight::criteria::material::MATERIAL_SIZE;
 use crate::insight::diagnose::prediction::channels::RATE;
@@ -37,6 +37,7 @@ impl Lost {
             && whole > LOST_OVER_HALF.get() * self.half as f64
             && whole > LOST_OVER_EARLY.get() * self.early as f64
             && self.share > MATERIAL_SIZE.get() * card.parameters[0].typical[0]
+            && self.share < LOST_SHARE_MOST.get()
     }
 }
 

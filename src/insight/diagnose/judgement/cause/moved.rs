@@ -154,3 +154,21 @@ impl Moved {
         Some(Least { size, sd, off, left: self.squares(&(&rest - &columns * &sizes)) })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::effects;
+
+    /// Four flights in rotorpy had a mass of 0.0001 to 0.02 of itself, with 0.3 to 2.9 standard deviations.
+    #[test]
+    fn what_is_small_or_not_sure_is_no_cause() {
+        let way = effects::cards().flat_map(ForceCause::of).find(|way| !way.about_full).expect("one");
+        let typical = way.card.parameters[0].typical[0];
+        assert!(is_sure(way, typical, 0.1 * typical));
+        assert!(!is_sure(way, 0.02 * typical, 0.001 * typical), "small");
+        assert!(!is_sure(way, typical, 0.4 * typical), "not sure");
+        let full = effects::cards().filter(|card| card.about_full).flat_map(ForceCause::of).find(|way| way.about_full);
+        assert!(!is_sure(full.expect("one"), 0.5 * COMPENSATED.get(), 0.0), "what a base vehicle may be off by");
+    }
+}
