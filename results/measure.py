@@ -49,7 +49,7 @@ COMMANDS = {
     "other-300s": ([], "3.5 h", f"{BENCH} --tier other --n 300 --seed 39 --seconds 300 --jobs 2 --extended "
                    "--csv results/other-truth.csv"),
     "rotorpy-diagnosis": ([], "1 h", "python3 tests/python/rotorpy_diagnosis.py target/release/racer "
-                          "results/rotorpy-diagnosis.csv --n 100 --seed 1"),
+                          "results/rotorpy-diagnosis.csv --n 100 --seed 2"),
     "retraining": ([], "0.5 h", "cargo bench --bench retraining -- --effects "
                    "rate_delay=0.06,voltage_sag=4,axial_inflow=1.5 --steps 14000000 --seeds 2 --agents 64"),
     "retraining-by-motor": ([], "0.3 h", "cargo bench --bench retraining -- --by-motor --effects "
