@@ -88,8 +88,8 @@ fn the_rotors_are_found_behind_a_mixer() {
     }
 }
 
-/// PX4, ArduPilot and Betaflight can all do that, rotorpy does; a line from commands to outputs gave 14 % too much thrust
-/// at full throttle there.
+/// PX4, ArduPilot and Betaflight can all do that, rotorpy does; a line from commands to outputs gave 14 % too much
+/// thrust at full throttle there.
 #[test]
 fn outputs_may_be_a_curve_of_the_command() {
     let truth = Controlled { linearises: true, ..Controlled::racer() };

@@ -1,5 +1,5 @@
-//! Rotors that slow down with another lag than they speed up with: tau of falling thrust is that of rising thrust plus a
-//! difference. Motors that only brake by drag fall later; thrust by the square of a speed that lags rises later.
+//! Rotors that slow down with another lag than they speed up with: tau of falling thrust is that of rising thrust plus
+//! a difference. Motors that only brake by drag fall later; thrust by the square of a speed that lags rises later.
 
 use super::{Actuator, Card, Effect, EffectKind, EffectParameter, Quantity, ResidualChannel};
 use crate::base::lane::Real;

@@ -23,7 +23,7 @@ mod tests {
     #[test]
     fn moving_air_brakes_less_than_it_pushes() {
         let pushing = |card, impact| Finding { impact, ..Finding::of(card) };
-        let gusts = pushing(effects::acting(Role::RandomForce).next().expect("gusts"), 0.17);
+        let gusts = pushing(effects::acting(Role::RandomForce).next().expect("one"), 0.17);
         let card = |flows| effects::MODEL.into_iter().find(|c| c.reads.contains(&Quantity::Velocity) == flows);
         let [drag, other] = [true, false].map(|flows| card(flows).expect("one"));
         assert!(may_be(&gusts, &pushing(drag, 0.068)));
