@@ -26,6 +26,7 @@ struct Room {
     throttle: Vec<f64>,
     /// Summed over the axes, rad/s.
     behind: Vec<f64>,
+    /// From command to output, at the flight's middle voltage.
     chain: RotorChain,
 }
 
@@ -82,7 +83,7 @@ impl Room {
 
     fn residual(&self, i: usize, k: f64) -> f64 {
         let command = with_room(2.0 * self.throttle[i] - 1.0, k, self.behind[i]);
-        self.output[i] - self.chain.motor(throttle(command), f64::NAN)
+        self.output[i] - self.chain.motor(throttle(command), self.chain.motor_at_v)
     }
 
     fn squares(&self, k: f64) -> f64 {

@@ -48,10 +48,7 @@ pub fn find(fitted: &FittedSelection) -> Option<Finding> {
     let mut seen = BTreeSet::new();
     found.retain(|account| seen.insert(account.way.card.id));
     let best = found.first()?;
-    if moved.in_proportion(best.limits) > best.share {
-        return None;
-    }
-    if !is_needed(fitted) {
+    if moved.in_proportion(best.limits) > best.share || !is_needed(fitted) {
         return None;
     }
     let close = |other: &&Account| 1.0 - other.share < CAUSE_TIE.get() * (1.0 - best.share) + CAUSE_TIE_SHARE.get();

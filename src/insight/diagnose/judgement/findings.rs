@@ -73,10 +73,9 @@ impl Judgement {
         for finding in self.findings.iter_mut().filter(|f| windy && gusts::rivals::last_like_wind(f)) {
             finding.suspect("beside a wind it lasts for seconds: the wind may turn, or grow with height".into());
         }
-        let gusts = self.findings.iter().find(|f| f.has(Role::RandomForce) && f.status != Status::Suspected).cloned();
-        for finding in
-            self.findings.iter_mut().filter(|f| gusts.as_ref().is_some_and(|gusts| gusts::rivals::may_be(gusts, f)))
-        {
+        let sure_gusts = |f: &&Finding| f.has(Role::RandomForce) && f.status != Status::Suspected;
+        let pushes = self.findings.iter().find(sure_gusts).map_or(0.0, |gusts| gusts.impact);
+        for finding in self.findings.iter_mut().filter(|f| gusts::rivals::may_be(pushes, f)) {
             finding.suspect("moving air makes as much of a drag by the square of the speed".into());
         }
         for finding in self.findings.iter_mut().filter(|f| f.status == Status::Named) {

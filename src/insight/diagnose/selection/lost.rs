@@ -124,3 +124,16 @@ impl StickAxis {
         Some(StickAnswer { missing: along / square, early })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::effects::{Role, acting};
+
+    #[test]
+    fn no_link_loses_two_commands_of_five() {
+        let card = acting(Role::CommandsLost).next().expect("one");
+        let lost = |share| Lost { share, interval: [share, share], whole: 12, half: 2, early: 0 };
+        assert!(lost(0.1).matters(card) && !lost(0.39).matters(card));
+    }
+}
