@@ -47,6 +47,8 @@ pub struct Card {
     pub controller: Option<ControllerPart>,
     /// An effect with the same mean, and what tells the two apart.
     pub twin: Option<Twin>,
+    /// What makes its size negative more often than the effect does, in words; empty where nothing does.
+    pub negative: &'static str,
     /// What gives it away.
     pub signature: &'static str,
     /// Identifiers of effects that look alike. One side of a pair is enough: see [`super::are_rivals`].
@@ -85,6 +87,7 @@ impl Card {
         apart_from: &[],
         controller: None,
         twin: None,
+        negative: "",
         signature: "",
         rivals: &[],
         manoeuvre: ("", &[]),

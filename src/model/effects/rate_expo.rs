@@ -14,6 +14,7 @@ impl Effect for RateExpo {
         parameters: &[EffectParameter { name: "e", unit: "1", low: -0.5, high: 1.0, typical: [0.05, 0.5] }],
         writes: &[Quantity::RateCommand],
         channels: &[ResidualChannel::Rate],
+        negative: "large turns fall short, as where motors are at their limits: no stick need be curved",
         signature: "the settled rate is a curve of the stick, the same at every speed of the stick",
         rivals: &["rate_slew_limit", "gyro_scale"],
         manoeuvre: ("steps of several sizes, held until the rate settles", &["roll-steps", "pitch-steps", "yaw-steps"]),

@@ -19,6 +19,7 @@ impl Effect for StreamOffset {
         role: Role::GyroLate,
         absorbed_by: &[CompactNumber::RollTime, CompactNumber::PitchTime, CompactNumber::YawTime],
         twin: Some(Twin { effect: "rate_delay", told_by: Evidence::OdometryClock }),
+        negative: "the attitude is later than the gyro, as estimators are: the gyro need not be early",
         signature: "the gyro is shifted against the attitude, not only against the commands",
         rivals: &["rate_delay", "clock_skew"],
         manoeuvre: ("fast stick doublets on every axis", &["roll-doublets", "pitch-doublets", "yaw-doublets"]),

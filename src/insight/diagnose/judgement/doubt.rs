@@ -1,5 +1,6 @@
 //! What puts a finding in doubt beyond the structure that is left: it does not pay on unseen flight, another one
-//! cancels it, attitude and velocity do not show what a sensor is said to have, or thrust does not show a clock.
+//! cancels it, attitude and velocity do not show what a sensor is said to have, thrust does not show a clock, or its
+//! size is negative, as something else makes it.
 
 mod alone;
 mod cancel;
@@ -22,8 +23,17 @@ pub fn all(fitted: &FittedSelection, findings: &mut [Finding]) {
     unshown(fitted, findings);
     unpaid(fitted, findings);
     untimed(fitted, findings);
-    late_gyro::early(findings);
+    negative(findings);
     late_gyro::may_be(fitted.problem.moved(), findings);
+}
+
+fn negative(findings: &mut [Finding]) {
+    let is_negative = |f: &Finding| f.parameters.values().any(|v| v.value < 0.0);
+    for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected && is_negative(f)) {
+        if let Some(card) = effects::card(finding.effect).filter(|card| !card.negative.is_empty()) {
+            finding.suspect(card.negative.into());
+        }
+    }
 }
 
 fn untimed(fitted: &FittedSelection, findings: &mut [Finding]) {
@@ -102,4 +112,27 @@ fn followed(fitted: &FittedSelection, card: &Card) -> bool {
     };
     let size = fitted.point().x[span(card).start];
     card.role == Role::ClockFast && seen().is_some_and(|seen| (seen / size - 1.0).abs() < SAME_SKEW_SHARE.get())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::insight::diagnose::judgement::finding::Value;
+
+    #[test]
+    fn what_makes_a_negative_size_without_the_effect_leaves_it_suspected() {
+        let status = |card: &'static Card, value: f64| {
+            let value = Value { value, low: value - 4e-4, high: value + 4e-4, unit: "s".into() };
+            let mut findings =
+                [Finding { parameters: [(card.parameters[0].name.into(), value)].into(), ..Finding::of(card) }];
+            negative(&mut findings);
+            findings[0].status
+        };
+        let (doubted, others): (Vec<_>, Vec<_>) = effects::cards().partition(|card| !card.negative.is_empty());
+        assert_eq!(doubted.len(), 2);
+        for card in doubted {
+            assert_eq!([status(card, -9e-4), status(card, 9e-4)], [Status::Suspected, Status::Named]);
+        }
+        assert!(others.into_iter().all(|card| status(card, -9e-4) == Status::Named));
+    }
 }

@@ -17,31 +17,10 @@ pub fn may_be(moved: f64, findings: &mut [Finding]) {
     }
 }
 
-/// A gyro that is early beside its attitude is an attitude that is late, as estimators are.
-pub fn early(findings: &mut [Finding]) {
-    let is_early = |f: &Finding| f.status != Status::Suspected && f.parameters.values().any(|v| v.value < 0.0);
-    for finding in findings.iter_mut().filter(|f| f.has(Role::GyroLate) && is_early(f)) {
-        finding.suspect("the attitude is later than the gyro, as estimators are: the gyro need not be early".into());
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::insight::diagnose::judgement::finding::Value;
-
-    #[test]
-    fn a_gyro_that_is_early_may_be_an_attitude_that_is_late() {
-        let card = effects::acting(Role::GyroLate).next().expect("one");
-        let status = |value: f64| {
-            let value = Value { value, low: value - 4e-4, high: value + 4e-4, unit: "s".into() };
-            let mut findings =
-                [Finding { parameters: [(card.parameters[0].name.into(), value)].into(), ..Finding::of(card) }];
-            early(&mut findings);
-            findings[0].status
-        };
-        assert_eq!([status(-9e-4), status(9e-4)], [Status::Suspected, Status::Named]);
-    }
 
     #[test]
     fn a_velocity_as_late_as_the_odometry_was_early_may_be_a_late_gyro() {
