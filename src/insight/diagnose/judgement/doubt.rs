@@ -27,6 +27,7 @@ pub fn all(fitted: &FittedSelection, findings: &mut [Finding]) {
     late_gyro::may_be(fitted.problem.moved(), findings);
 }
 
+/// Where something else makes a size negative more often than the effect does.
 fn negative(findings: &mut [Finding]) {
     let is_negative = |f: &Finding| f.parameters.values().any(|v| v.value < 0.0);
     for finding in findings.iter_mut().filter(|f| f.status != Status::Suspected && is_negative(f)) {
@@ -130,6 +131,7 @@ mod tests {
         };
         let (doubted, others): (Vec<_>, Vec<_>) = effects::cards().partition(|card| !card.negative.is_empty());
         assert_eq!(doubted.len(), 2);
+        assert!(effects::acting(Role::GyroLate).all(|card| !card.negative.is_empty()));
         for card in doubted {
             assert_eq!([status(card, -9e-4), status(card, 9e-4)], [Status::Suspected, Status::Named]);
         }
