@@ -25,13 +25,15 @@ use crate::model::effects::{self, Card, Role};
 const CAP: f64 = 6.0;
 /// Lags between which the memory of gusts is looked for, in bins.
 const LAGS: [usize; 2] = [6, 18];
+/// Parts of the flight, from one to the next of which a drag may change.
+const PARTS: usize = 4;
 /// Speed from which drag over speed tells how drag changes, m/s.
 const TOLD_M_S: f64 = 2.0;
 
 /// Gusts, where the forces' residual holds them; `structure_rms` of it is structure, m/s2.
 pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Option<Finding> {
     let card: &'static Card = effects::acting(Role::RandomForce).next()?;
-    let common = Autocovariance::of(problem, selection, true)?;
+    let common = Autocovariance::of(problem, selection, 1)?;
     let (sigma, tau) = (common.sigma(), common.tau());
     let swings = !oscillation::find(problem, &selection.point.residual).is_empty();
     if common.stretches() < AGREEING_STRETCHES.get()
@@ -61,9 +63,12 @@ pub fn find(problem: &Problem, selection: &Selection, structure_rms: f64) -> Opt
     if steady_air::lasting(problem, selection) > GUST_ONE_WAY.get() {
         found.suspect("it pushes one way for seconds: a wind that turns, or that is not the same everywhere".into());
     }
-    let whole = Autocovariance::of(problem, selection, false)?;
-    if common.near() < GUST_OWN.get() * whole.near() {
+    let [whole, beside_change] = [0, PARTS].map(|parts| Autocovariance::of(problem, selection, parts));
+    let own = GUST_OWN.get() * whole?.near();
+    if common.near() < own {
         found.suspect("most of it goes with the vehicle's own speed: a drag of another form leaves the same".into());
+    } else if beside_change?.near() < own {
+        found.suspect("most of it goes with the vehicle's own speed: a drag that changes in the flight does so".into());
     }
     Some(found)
 }
@@ -106,8 +111,8 @@ struct Autocovariance {
 }
 
 impl Autocovariance {
-    /// Of the residuals, or of what no form of a drag explains of them.
-    fn of(problem: &Problem, selection: &Selection, beside_drag: bool) -> Option<Self> {
+    /// Of the residuals, or of what no form of a drag explains of them that may change in so many parts of the flight.
+    fn of(problem: &Problem, selection: &Selection, parts: usize) -> Option<Self> {
         let mut out = Self { lags: [[0.0; 2]; 2], agree: [0.0; 2], blocks: vec![[0.0; 2]; problem.blocks] };
         for axis in 0..2 {
             let (rows, residual) = (&problem.rows[FORCE + axis], &selection.point.residual[FORCE + axis]);
@@ -115,8 +120,8 @@ impl Autocovariance {
                 return None;
             }
             let mut y = capped(residual, CAP, 0.0);
-            if beside_drag {
-                y = of_speed::without(problem, selection, axis, &y);
+            if parts > 0 {
+                y = of_speed::without(problem, selection, axis, &y, parts);
             }
             for (which, lag) in LAGS.into_iter().enumerate() {
                 let mut blocks = vec![0.0; problem.blocks];
