@@ -1,11 +1,12 @@
 //! What puts a finding in doubt beyond the structure that is left: it does not pay on unseen flight, another one
-//! cancels it, attitude and velocity do not show what a sensor is said to have, thrust does not show a clock, or its
-//! size is negative, as something else makes it.
+//! cancels it, attitude and velocity do not show what a sensor is said to have, thrust does not show a clock, moments
+//! of the air may be it, or its size is negative, as something else makes it.
 
 mod alone;
 mod cancel;
 mod clock;
 mod kinematic;
+mod moments;
 
 use super::finding::{Finding, Status};
 use super::{late_gyro, pays};
@@ -23,6 +24,7 @@ pub fn all(fitted: &FittedSelection, findings: &mut [Finding]) {
     unshown(fitted, findings);
     unpaid(fitted, findings);
     untimed(fitted, findings);
+    held(fitted, findings);
     negative(findings);
     late_gyro::may_be(fitted.problem.moved(), findings);
 }
@@ -41,6 +43,17 @@ fn untimed(fitted: &FittedSelection, findings: &mut [Finding]) {
     for (i, card) in named(fitted, findings) {
         if card.role == Role::ClockFast && clock::is_unshown(fitted, card) {
             findings[i].suspect("thrust does not show it: the rates' response may slow instead".into());
+        }
+    }
+}
+
+fn held(fitted: &FittedSelection, findings: &mut [Finding]) {
+    let Some(beside) = moments::beside(fitted) else { return };
+    for (i, card) in named(fitted, findings) {
+        if beside.share(card).is_some_and(moments::may_be) {
+            findings[i].suspect(
+                "much of it goes with the velocity: a rate loop that gives way to the air's moments does so".into(),
+            );
         }
     }
 }

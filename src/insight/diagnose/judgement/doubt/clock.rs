@@ -17,5 +17,5 @@ pub fn is_unshown(fitted: &FittedSelection, card: &Card) -> bool {
         let chance = KINEMATIC_DEVIATIONS.get() * sd;
         share < chance || share + chance < KINEMATIC_SHARE.get()
     };
-    Alone::of(fitted, |_| true, forces).and_then(|alone| alone.share(card)).is_some_and(unsure)
+    Alone::of(fitted, |_| true, forces, &[]).and_then(|alone| alone.share(card)).is_some_and(unsure)
 }

@@ -14,7 +14,7 @@ pub fn missing(fitted: &FittedSelection) -> Vec<&'static Card> {
     let sensed = |card: &&Card| card.kind == EffectKind::Sensor && seen(card);
     let mut cards: Vec<&'static Card> = effects::cards().filter(sensed).collect();
     let numbers: Vec<usize> = cards.iter().flat_map(|card| span(card)).collect();
-    let Some(alone) = Alone::of(fitted, |k| numbers.contains(&k), kinematic) else { return Vec::new() };
+    let Some(alone) = Alone::of(fitted, |k| numbers.contains(&k), kinematic, &[]) else { return Vec::new() };
     let short = |(share, sd): (f64, f64)| share + KINEMATIC_DEVIATIONS.get() * sd < KINEMATIC_SHARE.get();
     cards.retain(|card| alone.share(card).is_some_and(short));
     cards

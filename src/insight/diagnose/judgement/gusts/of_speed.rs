@@ -58,11 +58,11 @@ fn forms(v: [f64; 3], axis: usize, thrust: f64) -> [f64; FORMS] {
 mod tests {
     use super::*;
 
-    /// A drag with an exponent that is no form of its own leaves nothing, nor one that sets in; air that moves by itself
-    /// leaves nearly all.
+    /// A drag with an exponent that is no form of its own leaves nothing, nor does one that sets in; air that moves by
+    /// itself leaves nearly all.
     #[test]
     fn a_drag_of_another_form_goes_with_speed_and_a_gust_does_not() {
-        let at = |i: usize, rate: f64| (0.02 * rate * i as f64).sin();
+        let at = |i: usize, rate: f64| (0.1 * rate * i as f64).sin();
         let speeds = |i: usize| [9.0 * at(i, 1.0), 7.0 * at(i, 1.3), 3.0 * at(i, 0.7)];
         let left = |y: &dyn Fn(usize) -> f64, parts: usize| {
             let row = |i: usize| columns(forms(speeds(i), 0, 12.0 + 5.0 * at(i, 2.1)), i * parts / 3000, parts);
@@ -72,7 +72,8 @@ mod tests {
             squares(&less(&rows, &y)) / squares(&y)
         };
         assert!(left(&|i| speeds(i)[0] * speeds(i)[0].abs().powf(0.7), 1) < 1e-3);
-        let sets_in = |i: usize| if i < 1500 { 0.0 } else { speeds(i)[0] * speeds(i)[0].abs() };
+        let whole = |i: usize| speeds(i).iter().map(|v| v * v).sum::<f64>().sqrt();
+        let sets_in = |i: usize| if i < 1500 { 0.0 } else { speeds(i)[0] * whole(i) };
         assert!(left(&sets_in, 1) > 0.3 && left(&sets_in, 4) < 1e-3);
         assert!(left(&|i| at(i, 2.9), 4) > 0.8);
     }
