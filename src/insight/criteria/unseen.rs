@@ -27,7 +27,7 @@ criteria! {
     /// Standard deviations by which they have to show less.
     KINEMATIC_DEVIATIONS = 2.0, Theory("one in forty by chance");
     /// Share of an effect's size that has to be left beside rates that go with the velocity.
-    MOMENT_SHARE = 0.75, Assumed("0.5 and 0.6 of an expo beside flapping rotors in rotorpy, 0.99 and more elsewhere");
+    MOMENT_SHARE = 0.75, Assumed("0.5 and 0.6 of an expo beside flapping rotors in rotorpy, 0.99 in the third truth");
     /// Two effects cancel from this likeness on, of the opposite sign.
     CANCEL_LIKENESS = 0.9, Theory("there a fifth of the information on either is its own");
     /// Share of the larger one's whitened squares that both together may leave to cancel.
