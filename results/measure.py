@@ -40,7 +40,7 @@ COMMANDS = {
     "measured": (["logs"], "5 min", "python3 tests/python/measured_flights.py target/release/racer {logs} "
                  "results/measured-flights.csv"),
     "plan": ([], "10 min", f"{BENCH} --plan --n 200 --seed 8 --jobs 2 --csv results/plan.csv"),
-    "own": ([], "1 h", f"{BENCH} --tier matched --n 300 --seed 61 --jobs 2 --extended --csv results/own-truth.csv"),
+    "own": ([], "1 h", f"{BENCH} --tier matched --n 300 --seed 62 --jobs 2 --extended --csv results/own-truth.csv"),
     "unmatched": ([], "0.5 h", f"{BENCH} --n 14 --seed 32 --tier unmatched --jobs 2"),
     "outside": ([], "0.5 h", f"{BENCH} --n 14 --seed 33 --tier outside --jobs 2"),
     "race": ([], "0.5 h", f"{BENCH} --n 12 --seed 34 --tier matched --style race --jobs 2"),
