@@ -34,6 +34,8 @@ pub struct Answer {
     pub findings: Vec<Finding>,
     /// Effects that this log cannot show.
     pub not_detectable: Vec<String>,
+    /// Effects that it can, and the size from which it would.
+    pub detectable: BTreeMap<String, f64>,
     /// Whether a base parameter is said to have drifted.
     pub drift: bool,
     pub captured: Option<f64>,
@@ -53,6 +55,7 @@ impl Answer {
             verdict,
             findings,
             not_detectable: list(&json["not_detectable"]).iter().filter_map(effect).collect(),
+            detectable: list(&json["detectable"]).iter().filter_map(would_show).collect(),
             drift,
             captured: json["captured"].as_f64(),
             not_extended: json["not_extended"].as_str().map(str::to_string),
@@ -91,6 +94,10 @@ fn finding(json: &Value) -> Result<Finding, String> {
         }
     }
     Ok(Finding { effect, status, members, parameters })
+}
+
+fn would_show(json: &Value) -> Option<(String, f64)> {
+    Some((json["effect"].as_str()?.to_string(), json["smallest"].as_f64()?))
 }
 
 fn list(json: &Value) -> &[Value] {

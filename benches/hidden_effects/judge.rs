@@ -90,6 +90,12 @@ impl Judged {
         self.wanted().iter().any(|truth| truth.right.iter().any(|id| !hopeless(id)))
     }
 
+    /// Whether the only cause, in the catalogue's form, is as large as the report says would have shown.
+    pub fn promised(&self) -> bool {
+        let (Some(answer), [truth]) = (self.ok(), &self.hidden[..]) else { return false };
+        answer.detectable.get(&truth.id).is_some_and(|smallest| truth.size.abs() >= *smallest)
+    }
+
     /// Confident names for what is not there.
     pub fn confident_wrong(&self) -> usize {
         let Some(answer) = self.ok() else { return 0 };

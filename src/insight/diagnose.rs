@@ -108,7 +108,7 @@ pub fn diagnose(logs: Vec<Quality>, vehicle: &Vehicle, watch: Watch) -> Diagnose
         (true, true) => Verdict::Clean,
         (true, false) => Verdict::Effects,
     };
-    let (detectable, not_detectable) = detectable::judge(&problem, &selection.reach, &findings);
+    let (detectable, not_detectable) = detectable::judge(&problem, &selection, &findings);
     let extended = match worse {
         Some(worse) => Err(worse),
         None => extend::vehicle(&fitted_kept, &findings)

@@ -10,6 +10,7 @@ pub mod left_over;
 pub mod lost;
 pub mod ordinary;
 pub mod rank;
+pub mod reach;
 pub mod select;
 pub mod steady_air;
 pub mod trial;
@@ -22,7 +23,7 @@ use super::prediction::numbers::span;
 use super::prediction::problem::Problem;
 use crate::model::effects::Card;
 use candidates::Candidate;
-use rank::Reach;
+use reach::Reach;
 
 /// What selection ended with.
 pub struct Selection {
@@ -32,6 +33,7 @@ pub struct Selection {
     pub added: Vec<Added>,
     /// The fit of the compact model alone, under the same whitening.
     pub base: FitPoint,
+    /// What the flights could show of each effect: beside all that is held, or of what is held beside the base.
     pub reach: Vec<Reach>,
     /// Causes that were not added.
     pub others: Vec<Candidate>,

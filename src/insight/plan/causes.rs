@@ -61,7 +61,7 @@ pub fn tied(diagnosed: &Diagnosed) -> Option<Question> {
         cards.extend(card.filter(|_| !beside));
     }
     let found = candidates(problem, &rest.whitener, &rest.point, &cards);
-    let (order, _) = rank(problem, &rest.whitener, &rest.point, &found, false);
+    let order = rank(problem, &rest.whitener, &rest.point, &found).order;
     let first = |card: &&'static Card| order.iter().map(|s| s.0).find(|&j| found[j].card().id == card.id);
     let which: Vec<usize> = cards.iter().filter_map(first).collect();
     let trials = try_these(problem, &rest.whitener, &rest.point, &found, &which);

@@ -1,7 +1,6 @@
 //! Where nothing is tied: effects that the flights so far would not have shown because too little was flown.
 
 use super::causes::{Cause, Question};
-use crate::insight::criteria::flown::{ABSORBED_SHARE, SEEN_DEVIATIONS};
 use crate::insight::diagnose::Diagnosed;
 use crate::insight::diagnose::selection::candidates::{causes, directions};
 use crate::model::effects::Card;
@@ -12,10 +11,7 @@ pub fn question(diagnosed: &Diagnosed) -> Option<Question> {
     let listed = |card: &&&'static Card| diagnosed.diagnosis.not_detectable.iter().any(|n| n.effect == card.id);
     let little = |card: &&&'static Card| {
         let reach = selection.reach.iter().find(|r| r.card.id == card.id);
-        reach.is_none_or(|r| {
-            let smallest = SEEN_DEVIATIONS.get() / r.information.max(1e-300).sqrt();
-            r.kept >= ABSORBED_SHARE.get() && smallest > card.parameters[0].typical[1]
-        })
+        reach.is_none_or(|r| !r.absorbed() && r.beyond())
     };
     let known = causes(problem);
     let cards = known.iter().filter(listed).filter(little);

@@ -1,17 +1,19 @@
-//! What flights could show, before any residual is looked at: the smallest size of each effect that they would give
-//! away, and tell from its nearest rival.
+//! What flights could show, whatever they do show: the size of each effect from which nine of ten such flights would
+//! give it away, and tell it from its nearest rival.
 
 use super::diagnosis::{Detectable, NotDetectable};
 use super::finding::{Finding, Status};
-use crate::insight::criteria::flown::{ABSORBED_SHARE, NEAREST_LIKENESS, SEEN_DEVIATIONS};
+use crate::insight::criteria::flown::NEAREST_LIKENESS;
+use crate::insight::criteria::material::MATERIAL_SIZE;
 use crate::insight::diagnose::prediction::numbers::span;
 use crate::insight::diagnose::prediction::problem::Problem;
-use crate::insight::diagnose::selection::rank::Reach;
+use crate::insight::diagnose::selection::Selection;
+use crate::insight::diagnose::selection::lost::lost_commands;
 use crate::model::effects::{self, Card, EffectKind, ResidualChannel, Role};
 
 /// What the flights could show, and what not, and why; what is named of `findings` has shown, however little of it
 /// would have.
-pub fn judge(problem: &Problem, reach: &[Reach], findings: &[Finding]) -> (Vec<Detectable>, Vec<NotDetectable>) {
+pub fn judge(problem: &Problem, selection: &Selection, findings: &[Finding]) -> (Vec<Detectable>, Vec<NotDetectable>) {
     let (mut can, mut cannot) = (Vec::new(), Vec::new());
     for card in effects::cards() {
         let p = &card.parameters[0];
@@ -20,7 +22,7 @@ pub fn judge(problem: &Problem, reach: &[Reach], findings: &[Finding]) -> (Vec<D
         if span(card).any(|k| problem.model.base[k] != 0.0) {
             continue;
         }
-        let Some(r) = reach.iter().find(|r| r.card.id == card.id) else {
+        let Some(r) = selection.reach.iter().find(|r| r.card.id == card.id) else {
             if let Some(why) = lacking(problem, card) {
                 cannot.push(hidden(why, None));
             } else if card.kind != EffectKind::Random && card.role != Role::ConstantError {
@@ -28,21 +30,32 @@ pub fn judge(problem: &Problem, reach: &[Reach], findings: &[Finding]) -> (Vec<D
             }
             continue;
         };
-        let smallest = SEEN_DEVIATIONS.get() / r.information.max(1e-300).sqrt();
-        if r.kept < ABSORBED_SHARE.get() {
+        // What is less than that matters to nobody, and has no name.
+        let least = MATERIAL_SIZE.get() * p.typical[0];
+        // Lost commands are counted, and told from a delay by each of them.
+        let counted = card.role == Role::CommandsLost;
+        let seen = if counted { lost_commands(problem, selection).seen_from() } else { r.smallest };
+        let smallest = seen.max(least);
+        if r.behind {
             cannot.push(hidden(
-                "the compact model's own numbers take it up; only a drift against a known vehicle shows it".into(),
+                format!("what is fitted to these flights takes up most of it: {}", card.manoeuvre.0),
                 None,
             ));
             continue;
         }
-        let likeness = r.nearest.map_or(0.0, |(_, likeness)| likeness);
+        if r.absorbed() {
+            let why = "the compact model's own numbers take it up; only a drift against a known vehicle shows it";
+            cannot.push(hidden(why.into(), None));
+            continue;
+        }
+        let like = r.nearest.filter(|_| !counted);
+        let likeness = like.map_or(0.0, |(_, likeness)| likeness);
         let told_apart = smallest / (1.0 - likeness * likeness).max(1e-6).sqrt();
         if smallest > p.typical[1] {
             cannot.push(hidden(format!("too little of it was flown: {}", card.manoeuvre.0), Some(smallest)));
             continue;
         }
-        let nearest = r.nearest.filter(|n| n.1 > NEAREST_LIKENESS.get()).map(|n| n.0);
+        let nearest = like.filter(|n| n.1 > NEAREST_LIKENESS.get()).map(|n| n.0);
         can.push(Detectable {
             effect: card.id,
             smallest,

@@ -57,7 +57,7 @@ pub struct NotDetectable {
 pub struct Detectable {
     /// Identifier.
     pub effect: &'static str,
-    /// The smallest size that they show, and that they tell from the nearest rival.
+    /// The size of its main parameter from which nine of ten such flights show it.
     pub smallest: f64,
     /// The smallest size that they tell from the nearest rival.
     pub told_apart: f64,

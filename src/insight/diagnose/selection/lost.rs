@@ -8,6 +8,7 @@ use crate::insight::criteria::chance::{
     LOST_SHARE_MOST, LOST_WHOLE, MOVEMENT_BEFORE, MOVEMENT_DEVIATIONS,
 };
 use crate::insight::criteria::material::MATERIAL_SIZE;
+use crate::insight::criteria::planned::PLANNED_MARGIN;
 use crate::insight::diagnose::prediction::channels::RATE;
 use crate::insight::diagnose::prediction::numbers::TAU;
 use crate::insight::diagnose::prediction::problem::Problem;
@@ -27,9 +28,18 @@ pub struct Lost {
     /// Movements that were answered before they were due: a loss never is, a link whose delay varies is as often early
     /// as late.
     pub early: usize,
+    /// Movements that would have shown a loss.
+    pub looked_at: usize,
 }
 
 impl Lost {
+    /// Share of lost commands from which enough would have been seen in nine of ten flights: their number spreads by
+    /// its root.
+    pub fn seen_from(&self) -> f64 {
+        let half = 0.5 * PLANNED_MARGIN.get();
+        (half + half.hypot(LOST_COMMANDS.get().sqrt())).powi(2) / self.looked_at.max(1) as f64
+    }
+
     /// Whether commands get lost, by a share that matters for the effect of this card.
     pub fn matters(&self, card: &Card) -> bool {
         let whole = self.whole as f64;
@@ -64,10 +74,11 @@ pub fn lost_commands(problem: &Problem, selection: &Selection) -> Lost {
     let count = |of: &dyn Fn(&StickAnswer) -> bool| answers.iter().filter(|a| of(a)).count();
     let whole = count(&|a| (LOST_WHOLE.get()..LOST_MOST.get()).contains(&a.missing));
     let half = count(&|a| (LOST_HALF.get()..LOST_WHOLE.get()).contains(&a.missing));
-    let n = answers.len().max(1) as f64;
+    let looked_at = answers.len();
+    let n = looked_at.max(1) as f64;
     let share = (whole + half) as f64 / n;
     let spread = NORMAL_95 * (share * (1.0 - share) / n).sqrt();
-    Lost { share, interval: [share - spread, share + spread], whole, half, early: count(&|a| a.early) }
+    Lost { share, interval: [share - spread, share + spread], whole, half, early: count(&|a| a.early), looked_at }
 }
 
 /// How a movement was answered.
@@ -133,7 +144,14 @@ mod tests {
     #[test]
     fn no_link_loses_two_commands_of_five() {
         let card = acting(Role::CommandsLost).next().expect("one");
-        let lost = |share| Lost { share, interval: [share, share], whole: 12, half: 2, early: 0 };
+        let lost = |share| Lost { share, interval: [share, share], whole: 12, half: 2, early: 0, looked_at: 200 };
         assert!(lost(0.1).matters(card) && !lost(0.39).matters(card));
+    }
+
+    #[test]
+    fn enough_losses_are_seen_in_nine_of_ten_flights() {
+        let lost = Lost { share: 0.1, interval: [0.1; 2], whole: 12, half: 2, early: 0, looked_at: 200 };
+        let expected = 200.0 * lost.seen_from();
+        assert!((expected - PLANNED_MARGIN.get() * expected.sqrt() - LOST_COMMANDS.get()).abs() < 1e-9);
     }
 }

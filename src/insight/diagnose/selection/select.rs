@@ -4,6 +4,7 @@ use super::begin::begin;
 use super::candidates::{Candidate, base_numbers, candidates, causes, renewed};
 use super::left_over::saturated;
 use super::rank::rank;
+use super::reach::{Reach, reach};
 use super::trial::{Trial, tied, try_best, try_these};
 use super::{Added, Selection};
 use crate::insight::criteria::consistent::CLOCK_SKEW_SEEN;
@@ -25,24 +26,26 @@ pub fn select(problem: &Problem, watch: &mut dyn FnMut(&str, f64)) -> Selection 
     watch("fitting the base", 0.1);
     let mut search = Search::new(problem, &base_numbers(problem));
     let free = search.point.free.clone();
-    let mut reach = Vec::new();
+    let mut reached: Vec<Reach> = Vec::new();
     let most = MOST_EFFECTS.count();
     for round in 0..=most {
         watch("weighing causes", 0.2 + 0.6 * round as f64 / most as f64);
-        let first = round == 0;
-        search.find(first);
-        let (order, reached) = rank(problem, &search.whitener, &search.point, &search.found, first);
-        if first {
-            reach = reached;
+        search.find(round == 0);
+        let ranking = rank(problem, &search.whitener, &search.point, &search.found);
+        if round == 0 {
+            reached = reach(&ranking, &search.found);
         }
-        search.keep_ties(&order);
-        if round == most || !search.add(&order) {
+        search.keep_ties(&ranking.order);
+        if round == most || !search.add(&ranking.order) {
+            if round > 0 {
+                Reach::renew(&mut reached, reach(&ranking, &search.found));
+            }
             break;
         }
     }
     let Search { whitener, point, added, found, .. } = search;
     let base = if added.is_empty() { point.clone() } else { fit::fit(problem, &whitener, &problem.model.base, &free) };
-    Selection { point, whitener, added, base, reach, others: found }
+    Selection { point, whitener, added, base, reach: reached, others: found }
 }
 
 /// A selection on its way.
