@@ -77,9 +77,9 @@ fn smallest(score: &ScoreTest) -> f64 {
     evident_from(each, apart / all.max(1e-300))
 }
 
-    let nth = |count: f64| information.get(count as usize - 1).copied();
-    let alone = |count: f64| nth(count).map_or(f64::INFINITY, |i| deviations(STRETCH_DEVIATIONS.get(), i));
-/// what stretches say of it spreads by `spread` times the variance of white noise.
+/// Size from which an effect is evident, in nine of ten flights, of which each stretch of time has so much information
+/// on a size of 1, where what stretches say of it spreads by `spread` times the
+/// variance of white noise.
 fn evident_from(mut information: Vec<f64>, spread: f64) -> f64 {
     information.iter_mut().for_each(|i| *i = i.max(0.0));
     information.sort_by(|a, b| b.total_cmp(a));
