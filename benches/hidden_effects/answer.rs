@@ -36,6 +36,8 @@ pub struct Answer {
     pub not_detectable: Vec<String>,
     /// Effects that it can, and the size from which it would.
     pub detectable: BTreeMap<String, f64>,
+    /// Effects that it shows and that are too small to matter.
+    pub small: Vec<String>,
     /// Whether a base parameter is said to have drifted.
     pub drift: bool,
     pub captured: Option<f64>,
@@ -56,6 +58,7 @@ impl Answer {
             findings,
             not_detectable: list(&json["not_detectable"]).iter().filter_map(effect).collect(),
             detectable: list(&json["detectable"]).iter().filter_map(would_show).collect(),
+            small: list(&json["small"]).iter().filter_map(effect).collect(),
             drift,
             captured: json["captured"].as_f64(),
             not_extended: json["not_extended"].as_str().map(str::to_string),

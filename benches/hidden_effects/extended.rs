@@ -23,6 +23,8 @@ pub struct Extended {
     pub trains: bool,
     /// Signals of the unseen flight, and the error of the extended vehicle over that of the base, by size.
     pub ratios: Vec<(String, f64)>,
+    /// Those that are worse beyond chance, as `racer predict` tells it.
+    pub surely_worse: Vec<(String, f64)>,
 }
 
 impl Extended {
@@ -46,28 +48,32 @@ impl Extended {
         let asked = ["predict", UNSEEN, "--vehicle", VEHICLE, "--vehicle", EXTENDED, "--json"];
         let said: Value = serde_json::from_str(&run::said(args, folder, &asked)?).map_err(|error| error.to_string())?;
         let channels = said["channels"].as_array().ok_or("a prediction without channels")?;
-        let ratio = |channel: &Value| {
-            let of = |vehicle: usize| channel["scores"][vehicle]["rmse"].as_f64();
-            Some((channel["name"].as_str()?.to_string(), of(1)? / of(0)?))
+        let ratio =
+            |channel: &Value| Some((channel["name"].as_str()?.to_string(), 1.0 + channel["change"][0]["by"].as_f64()?));
+        let sure = |channel: &&Value| channel["change"][0]["low"].as_f64().is_some_and(|low| low > 0.0);
+        let sorted = |mut of: Vec<(String, f64)>| {
+            of.sort_by(|a, b| a.1.total_cmp(&b.1));
+            of
         };
-        let mut ratios: Vec<(String, f64)> = channels.iter().filter_map(ratio).collect();
-        ratios.sort_by(|a, b| a.1.total_cmp(&b.1));
-        Ok(Self { trains, ratios })
+        let ratios = sorted(channels.iter().filter_map(ratio).collect());
+        let surely_worse = sorted(channels.iter().filter(sure).filter_map(ratio).collect());
+        Ok(Self { trains, ratios, surely_worse })
     }
 }
 
-/// Whether there is one, else why not; whether it trains; and what it predicts best and worst.
+/// Whether there is one, else why not; whether it trains; what it predicts best and worst, and worst
+/// of what is worse beyond chance.
 pub fn fields(judged: &Judged) -> Vec<String> {
     let why = judged.answer.as_ref().ok().and_then(|answer| answer.not_extended.clone());
     let mut fields = match &judged.extended {
         None => vec![why.unwrap_or_default()],
         Some(Err(error)) => vec![format!("FAILED {error}")],
         Some(Ok(of)) => {
-            let ends = [of.ratios.first(), of.ratios.last()].into_iter().flatten();
+            let ends = [of.ratios.first(), of.ratios.last(), of.surely_worse.last()].into_iter().flatten();
             let ends = ends.flat_map(|(name, ratio)| [name.clone(), format!("{ratio:.4}")]);
             ["1".to_string(), usize::from(of.trains).to_string()].into_iter().chain(ends).collect()
         }
     };
-    fields.resize(6, String::new());
+    fields.resize(8, String::new());
     fields
 }

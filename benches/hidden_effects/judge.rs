@@ -96,6 +96,12 @@ impl Judged {
         answer.detectable.get(&truth.id).is_some_and(|smallest| truth.size.abs() >= *smallest)
     }
 
+    /// Whether the only cause is named, alone or in a set, or listed as too small to matter.
+    pub fn shown(&self) -> bool {
+        let small = |truth: &Hidden| self.ok().is_some_and(|answer| answer.small.iter().any(|id| truth.is(id)));
+        self.found()[1] == 1 || self.hidden.first().is_some_and(small)
+    }
+
     /// Confident names for what is not there.
     pub fn confident_wrong(&self) -> usize {
         let Some(answer) = self.ok() else { return 0 };

@@ -23,6 +23,8 @@ impl Row for Judged {
         "best_ratio",
         "worst",
         "worst_ratio",
+        "surely_worse",
+        "surely_ratio",
     ];
 
     fn fields(&self) -> Vec<String> {

@@ -60,7 +60,7 @@ fn shares(all: &[Judged]) {
     let hidden = |j: &Judged| matches!(j.group, Group::One | Group::Two);
     share("one or two: right cause first", &hidden, &Judged::first_is_right);
     share("one or two: every cause named or in a set", &hidden, &|j| j.found()[1] == j.hidden.len());
-    share("one that would show, by the report: named", &|j| j.promised(), &|j| j.found()[1] == 1);
+    share("one that would show, by the report: does", &|j| j.promised(), &Judged::shown);
     let outside = |j: &Judged| j.group == Group::Outside;
     share("outside: told to be unexplained", &outside, &Judged::unexplained);
     share("outside: given a name", &outside, &|j| j.first().is_some());

@@ -7,6 +7,7 @@ use crate::base::error::Result;
 use crate::base::fsio::Reserved;
 use crate::flight::Options;
 use crate::insight::identify::{FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ};
+use crate::insight::predict::change::Change;
 use crate::insight::predict::{PredictOptions, Prediction, predict};
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::insight::quality::together;
@@ -59,6 +60,9 @@ const HELP: &str = "Columns of the CSV file: log, time_s, channel, unit, measure
 vehicle predicted_2 and residual_2. The residual is what was measured less what was predicted. The MCAP file has a \
 topic each channel with the same numbers.
 
+Of a second vehicle it is said by which share its RMS differs from the first one's, with the 95 % interval that \
+stretches of two seconds tell: where that holds 0 the two are not told apart.
+
 The open-loop table says how far the simulation is off a moment after it was where the flight was, with nothing but \
 the logged commands.
 
@@ -71,6 +75,9 @@ Examples:
   racer predict flight.mcap --vehicle mine.toml --vehicle extended.toml --out both.mcap
 
 Exit code 3 means that a log is damaged and that its readable part was used.";
+
+/// Columns of the table of signals; the last of a second vehicle only.
+const HEADER: [&str; 8] = ["signal", "vehicle", "RMS", "MAE", "", "R2", "samples", "change of RMS"];
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -88,6 +95,8 @@ struct ChannelDocument {
     name: &'static str,
     unit: &'static str,
     scores: Vec<crate::base::stats::Score>,
+    /// By which share the RMS of each vehicle after the first differs from the first one's.
+    change: Vec<Option<Change>>,
 }
 
 /// Reads, predicts, writes, prints.
@@ -163,6 +172,7 @@ fn json(prediction: &Prediction) -> Result<String> {
         name: c.name,
         unit: c.unit,
         scores: (0..prediction.vehicles.len()).map(|k| c.score(k)).collect(),
+        change: (1..prediction.vehicles.len()).map(|k| c.change(k)).collect(),
     };
     let document = PredictionDocument {
         vehicles: &prediction.vehicles,
@@ -172,6 +182,12 @@ fn json(prediction: &Prediction) -> Result<String> {
         open_loop: &prediction.ahead,
     };
     encode::json("the prediction", &document)
+}
+
+/// A change with its interval.
+fn percent(change: Change) -> String {
+    let [by, low, high] = [change.by, change.low, change.high].map(|share| 100.0 * share);
+    format!("{by:+.1} % ({low:+.1} to {high:+.1})")
 }
 
 /// Tables of how well each vehicle predicts.
@@ -188,10 +204,13 @@ fn text(prediction: &Prediction) -> String {
                 channel.unit.to_string(),
                 format!("{:.3}", score.r2),
                 score.n.to_string(),
+                if k == 0 { String::new() } else { channel.change(k).map_or_else(String::new, percent) },
             ]);
         }
     }
-    let mut out = columns::table(&["signal", "vehicle", "RMS", "MAE", "", "R2", "samples"], rows, 2..4);
+    let columns = HEADER.len() - usize::from(prediction.vehicles.len() == 1);
+    rows.iter_mut().for_each(|row| row.truncate(columns));
+    let mut out = columns::table(&HEADER[..columns], rows, 2..4);
     let mut rows = Vec::new();
     for (vehicle, ahead) in prediction.vehicles.iter().zip(&prediction.ahead) {
         for h in ahead {

@@ -2,6 +2,7 @@
 //!
 //! The figures of an identification are made here too, so that they can be had again from a vehicle file and the logs.
 
+pub mod change;
 pub mod drive;
 pub mod signals;
 
@@ -9,6 +10,7 @@ use crate::base::stats::Score;
 use crate::insight::diagnose::prediction::horizon::{AT_S, Horizon};
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::model::vehicle::Vehicle;
+use change::{Change, by_stretch};
 use signals::{CHANNELS, NAMES, Signals, UNITS};
 
 /// How signals are compared.
@@ -43,6 +45,15 @@ impl PredictedChannel {
     /// How well vehicle number `vehicle` predicts.
     pub fn score(&self, vehicle: usize) -> Score {
         Score::of(&self.measured, &self.predicted[vehicle])
+    }
+
+    /// By which share the RMS of vehicle number `vehicle` differs from the first one's.
+    pub fn change(&self, vehicle: usize) -> Option<Change> {
+        let squares = |predicted: &[f64]| {
+            let each = self.measured.iter().zip(predicted).map(|(m, p)| (m - p).powi(2));
+            by_stretch(&self.flight, &self.time_s, each)
+        };
+        Change::of(&squares(&self.predicted[0]), &squares(&self.predicted[vehicle]))
     }
 }
 

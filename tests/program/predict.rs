@@ -47,6 +47,11 @@ fn a_prediction_and_its_files() {
     std::fs::copy("configs/vehicles/seed_class.toml", folder.path().join("other.toml")).unwrap();
     let one_name = json(&run("predict flight.mcap --vehicle seed_class --vehicle other.toml --json").out);
     assert_eq!(one_name["vehicles"], serde_json::json!(["seed_class", "other.toml"]));
+    let ran = run("predict flight.mcap --vehicle seed_class --vehicle mine.toml --json");
+    let channel = json(&ran.out)["channels"][0].clone();
+    let [by, low, high] = ["by", "low", "high"].map(|key| channel["change"][0][key].as_f64().unwrap());
+    let [first, second] = [0, 1].map(|k| channel["scores"][k]["rmse"].as_f64().unwrap());
+    assert!((1.0 + by - second / first).abs() < 1e-9 && low < by && by < high && high < 0.0, "{low} {by} {high}");
     let (mut squares, mut n) = (0.0, 0.0);
     for row in reader.records().map(Result::unwrap).filter(|row| &row[2] == "roll rate") {
         let number = |k: usize| row[k].parse::<f64>().unwrap();
