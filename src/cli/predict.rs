@@ -7,7 +7,7 @@ use crate::base::error::Result;
 use crate::base::fsio::Reserved;
 use crate::flight::Options;
 use crate::insight::identify::{FORCE_CUTOFF_HZ, IdentifyOptions, RATE_CUTOFF_HZ};
-use crate::insight::predict::change::Change;
+use crate::insight::predict::rms_change::RmsChange;
 use crate::insight::predict::{PredictOptions, Prediction, predict};
 use crate::insight::prepare::data::{Data, DataPart};
 use crate::insight::quality::together;
@@ -96,7 +96,7 @@ struct ChannelDocument {
     unit: &'static str,
     scores: Vec<crate::base::stats::Score>,
     /// By which share the RMS of each vehicle after the first differs from the first one's.
-    change: Vec<Option<Change>>,
+    change: Vec<Option<RmsChange>>,
 }
 
 /// Reads, predicts, writes, prints.
@@ -185,7 +185,7 @@ fn json(prediction: &Prediction) -> Result<String> {
 }
 
 /// A change with its interval.
-fn percent(change: Change) -> String {
+fn percent(change: RmsChange) -> String {
     let [by, low, high] = [change.by, change.low, change.high].map(|share| 100.0 * share);
     format!("{by:+.1} % ({low:+.1} to {high:+.1})")
 }

@@ -2,15 +2,15 @@
 //!
 //! The figures of an identification are made here too, so that they can be had again from a vehicle file and the logs.
 
-pub mod change;
 pub mod drive;
+pub mod rms_change;
 pub mod signals;
 
 use crate::base::stats::Score;
 use crate::insight::diagnose::prediction::horizon::{AT_S, Horizon};
 use crate::insight::prepare::data::{Chosen, Data, DataPart};
 use crate::model::vehicle::Vehicle;
-use change::{Change, by_stretch};
+use rms_change::{RmsChange, by_stretch};
 use signals::{CHANNELS, NAMES, Signals, UNITS};
 
 /// How signals are compared.
@@ -48,12 +48,12 @@ impl PredictedChannel {
     }
 
     /// By which share the RMS of vehicle number `vehicle` differs from the first one's.
-    pub fn change(&self, vehicle: usize) -> Option<Change> {
+    pub fn change(&self, vehicle: usize) -> Option<RmsChange> {
         let squares = |predicted: &[f64]| {
             let each = self.measured.iter().zip(predicted).map(|(m, p)| (m - p).powi(2));
             by_stretch(&self.flight, &self.time_s, each)
         };
-        Change::of(&squares(&self.predicted[0]), &squares(&self.predicted[vehicle]))
+        RmsChange::of(&squares(&self.predicted[0]), &squares(&self.predicted[vehicle]))
     }
 }
 

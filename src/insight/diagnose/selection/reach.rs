@@ -78,8 +78,7 @@ fn smallest(score: &ScoreTest) -> f64 {
 }
 
 /// Size from which an effect is evident, in nine of ten flights, of which each stretch of time has so much information
-/// on a size of 1, where what stretches say of it spreads by `spread` times the
-/// variance of white noise.
+/// on a size of 1, where what stretches say of it spreads by `spread` times the variance of white noise.
 fn evident_from(mut information: Vec<f64>, spread: f64) -> f64 {
     information.iter_mut().for_each(|i| *i = i.max(0.0));
     information.sort_by(|a, b| b.total_cmp(a));

@@ -8,14 +8,14 @@ pub const STRETCH_S: f64 = 2.0;
 
 /// By which share an RMS differs from another: 0.1 is a tenth more.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Change {
+pub struct RmsChange {
     pub by: f64,
     /// Ends of its 95 % interval, from how stretches of flight differ.
     pub low: f64,
     pub high: f64,
 }
 
-impl Change {
+impl RmsChange {
     /// Of the squares `after` against those `before`, sums by stretch; `None` where there are fewer than two stretches
     /// or no error before.
     pub fn of(before: &[f64], after: &[f64]) -> Option<Self> {
@@ -50,11 +50,11 @@ mod tests {
     #[test]
     fn what_every_stretch_shows_is_sure_and_what_one_shows_is_not() {
         let before = [1.0, 2.0, 1.0, 3.0];
-        let all = Change::of(&before, &before.map(|b| 1.21 * b)).unwrap();
+        let all = RmsChange::of(&before, &before.map(|b| 1.21 * b)).unwrap();
         assert!([all.by, all.low, all.high].iter().all(|x| (x - 0.1).abs() < 1e-12), "{all:?}");
-        let once = Change::of(&before, &[1.0, 2.0, 1.0, 9.0]).unwrap();
+        let once = RmsChange::of(&before, &[1.0, 2.0, 1.0, 9.0]).unwrap();
         assert!(once.by > 0.3 && once.low < 0.0, "{once:?}");
-        assert_eq!((Change::of(&[1.0], &[2.0]), Change::of(&[0.0; 2], &[1.0; 2])), (None, None));
+        assert_eq!((RmsChange::of(&[1.0], &[2.0]), RmsChange::of(&[0.0; 2], &[1.0; 2])), (None, None));
     }
 
     #[test]
@@ -63,7 +63,7 @@ mod tests {
         let mut square = |scale: f64| scale * (0..4).map(|_| random.uniform([-0.5, 0.5]).powi(2)).sum::<f64>();
         let holds = (0..2000).filter(|_| {
             let [before, after] = [1.0, 1.44].map(|scale| (0..30).map(|_| square(scale)).collect::<Vec<f64>>());
-            Change::of(&before, &after).is_some_and(|change| change.low < 0.2 && 0.2 < change.high)
+            RmsChange::of(&before, &after).is_some_and(|change| change.low < 0.2 && 0.2 < change.high)
         });
         let share = holds.count() as f64 / 2000.0;
         assert!((0.93..0.97).contains(&share), "{share}");
