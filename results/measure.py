@@ -48,6 +48,8 @@ COMMANDS = {
               "--csv results/other-truth.csv"),
     "other-300s": ([], "3.5 h", f"{BENCH} --tier other --n 300 --seed 39 --seconds 300 --jobs 2 --extended "
                    "--csv results/other-truth.csv"),
+    "other-seed40": ([], "5 h", f"{BENCH} --tier other --n 300 --seed 40 --seconds 300 --jobs 2 --extended "
+                     "--csv results/other-truth-seed40.csv"),
     "rotorpy-diagnosis": ([], "1 h", "python3 tests/python/rotorpy_diagnosis.py target/release/racer "
                           "results/rotorpy-diagnosis.csv --n 100 --seed 2"),
     "retraining": ([], "0.5 h", "cargo bench --bench retraining -- --effects "
