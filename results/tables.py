@@ -279,18 +279,36 @@ NOT_ASKED = ["nothing is named", "the log was refused"]
 
 def other_extended(seconds="100"):
     """Their extended vehicles: trained for a moment, and held against another flight."""
-    of = other_latest(seconds)
+    return extended(other_latest(seconds))
+
+
+def other_unfinished():
+    """The third truth's logs of a seed that is not flown whole yet, of all its builds, by what is hidden."""
+    return groups(rows("other-truth-seed40"))
+
+
+def other_unfinished_extended():
+    """The extended vehicles of the last build of these."""
+    return extended(latest("other-truth-seed40"))
+
+
+def extended(of):
+    """Extended vehicles: written, trained, and worse than the base."""
     written = [r for r in of if r["extended"] == "1"]
     why = {}
     for r in of:
         if r["extended"] != "1":
             why.setdefault(re.sub(r" \d+ %", " some", r["extended"]) or NOT_ASKED[r["verdict"].startswith("FAILED")], []).append(r)
     worse = lambda by: sum(float(r["worst_ratio"]) > 1 + by for r in written)
+    # Rows of builds that did not tell it are empty.
+    told = [float(r["surely_ratio"]) for r in written if r["surely_ratio"]]
+    surely = sum(ratio > 1.02 for ratio in told)
     body = [
         ("written", wilson(len(written), len(of))),
         ("of these: train", wilson(sum(r["trains"] == "1" for r in written), len(written))),
         ("a signal is predicted more than 2 % worse than by the base", wilson(worse(0.02), len(written))),
         ("more than 10 % worse", wilson(worse(0.10), len(written))),
+        *([("more than 2 % worse, and that beyond chance", wilson(surely, len(written)))] if told else []),
         ("error of the signal that gains most, over the base's: median",
          f"{statistics.median(float(r['best_ratio']) for r in written):.2f}"),
         *((f"not written: {reason}", len(logs)) for reason, logs in sorted(why.items(), key=lambda x: -len(x[1]))),
@@ -441,7 +459,8 @@ def precision():
 
 
 TABLES = [training, budgets, refinement, tried, loop, rotorpy, rotorpy_diagnosis, other_truth, other_groups, own_truth,
-          retraining, soak, other_extended, against, against_runs, by_motors, plan, blackbox, precision,
+          retraining, soak, other_extended, other_unfinished,
+          other_unfinished_extended, against, against_runs, by_motors, plan, blackbox, precision,
           measured_names, measured_unseen, measured_all]
 MADE = {f.__name__: f for f in TABLES}
 

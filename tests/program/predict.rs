@@ -45,6 +45,7 @@ fn a_prediction_and_its_files() {
     let expected = "log,time_s,channel,unit,measured,predicted,residual,predicted_2,residual_2";
     assert_eq!(header.join(","), expected);
     std::fs::copy("configs/vehicles/seed_class.toml", folder.path().join("other.toml")).unwrap();
+    assert!(ran.out.contains("change of RMS") && ran.out.contains(" to +"), "{}", ran.out);
     let one_name = json(&run("predict flight.mcap --vehicle seed_class --vehicle other.toml --json").out);
     assert_eq!(one_name["vehicles"], serde_json::json!(["seed_class", "other.toml"]));
     let ran = run("predict flight.mcap --vehicle seed_class --vehicle mine.toml --json");

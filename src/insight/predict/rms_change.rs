@@ -4,7 +4,7 @@ use crate::base::stats::mean_half_width;
 use std::collections::BTreeMap;
 
 /// Length of the stretches of flight whose errors are taken as independent of each other, s.
-pub const STRETCH_S: f64 = 2.0;
+const STRETCH_S: f64 = 2.0;
 
 /// By which share an RMS differs from another: 0.1 is a tenth more.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -16,8 +16,8 @@ pub struct RmsChange {
 }
 
 impl RmsChange {
-    /// Of the squares `after` against those `before`, sums by stretch; `None` where there are fewer than two stretches
-    /// or no error before.
+    /// Of the squares `after` against those `before`, sums by stretch, by the delta method (Cochran, "Sampling
+    /// Techniques", 1977, on ratios); `None` where there are fewer than two stretches, or one of both has no error.
     pub fn of(before: &[f64], after: &[f64]) -> Option<Self> {
         let [sum_before, sum_after] = [before, after].map(|squares| squares.iter().sum::<f64>());
         if sum_before <= 0.0 || sum_after <= 0.0 {
@@ -33,7 +33,8 @@ impl RmsChange {
     }
 }
 
-/// Sums of `squares` by stretch of each flight.
+/// Sums of `squares` by stretch of each flight: of samples in the order of time, the number of their flight and their
+/// times, s.
 pub fn by_stretch(flight: &[usize], time_s: &[f64], squares: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut sums: BTreeMap<(usize, i64), f64> = BTreeMap::new();
     for ((flight, time), square) in flight.iter().zip(time_s).zip(squares) {
